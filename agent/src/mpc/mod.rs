@@ -1,0 +1,2 @@
+//! The robot's quadratic program and the ladder of its solvers.
+pub mod problem;

@@ -1,0 +1,86 @@
+//! A robot's plan as the others see it.
+
+use crate::horizon::{Horizon, MAX_HORIZON};
+use crate::{Input, Position};
+
+/// Predicted states of one robot, computed at one tick: x^[l|k] for l = 0..=N, metres, world frame.
+///
+/// `state(0)` is where the robot was when it planned, `state(1)` where it will be at the next tick
+/// (the *present* position for whoever reads this plan at tick `k + 1`).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Prediction {
+    horizon: Horizon,
+    states: [Position; MAX_HORIZON + 1],
+    /// Where the robot wants to go; neighbours need it to give way (safe.md, rule 3).
+    pub set_point: Position,
+}
+
+impl Prediction {
+    /// Rolls the model x[l+1] = x[l] + h u[l] out from `position` over all `inputs` (1..=49 of them,
+    /// more are ignored).
+    pub fn roll_out(position: Position, set_point: Position, sample_time: f64, inputs: &[Input]) -> Self {
+        let horizon = Horizon::saturating(inputs.len() as i64);
+        let mut states = [position; MAX_HORIZON + 1];
+        for (l, input) in inputs.iter().take(horizon.steps()).enumerate() {
+            states[l + 1] = states[l] + input * sample_time;
+        }
+        Self { horizon, states, set_point }
+    }
+
+    /// A plan from its own states x^[0..=N]; `states` holds 2..=50 points.
+    pub fn from_states(states: &[Position], set_point: Position) -> Self {
+        let horizon = Horizon::saturating(states.len() as i64 - 1);
+        let last = states.last().copied().unwrap_or_default();
+        let mut all = [last; MAX_HORIZON + 1];
+        for (to, from) in all.iter_mut().zip(states) {
+            *to = *from;
+        }
+        Self { horizon, states: all, set_point }
+    }
+
+    /// N of this plan.
+    pub fn horizon(&self) -> Horizon {
+        self.horizon
+    }
+
+    /// x^[l|k] for `step` l in 0..=N.
+    pub fn state(&self, step: usize) -> Position {
+        self.states[step]
+    }
+
+    /// x^[0..=N|k], N + 1 points.
+    pub fn states(&self) -> &[Position] {
+        &self.states[..=self.horizon.steps()]
+    }
+
+    /// The plan one tick later without news: every state moves one step forward, the robot is
+    /// assumed to stay where the plan ends. Used when a neighbour's message is missing.
+    pub fn shifted(&self) -> Self {
+        let mut next = self.clone();
+        next.states.copy_within(1.., 0);
+        for l in self.horizon.steps()..=MAX_HORIZON {
+            next.states[l] = self.states[self.horizon.steps()];
+        }
+        next
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn roll_out_follows_the_model() {
+        let inputs = [Input::new(1.0, 0.0), Input::new(0.0, -1.5)];
+        let plan = Prediction::roll_out(Position::new(1.0, 1.0), Position::zeros(), 0.2, &inputs);
+        assert_eq!(plan.horizon().steps(), 2);
+        assert_eq!(plan.states(), [Position::new(1.0, 1.0), Position::new(1.2, 1.0), Position::new(1.2, 0.7)]);
+    }
+
+    #[test]
+    fn a_shifted_plan_ends_where_it_ended() {
+        let states = [Position::new(0.0, 0.0), Position::new(1.0, 0.0), Position::new(2.0, 0.0)];
+        let shifted = Prediction::from_states(&states, Position::zeros()).shifted();
+        assert_eq!(shifted.states(), [states[1], states[2], states[2]]);
+    }
+}
