@@ -1,0 +1,249 @@
+//! The folder of a run: where it lies, and files that are either whole or absent.
+
+use std::fs::{self, File};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::time::{SystemTime, UNIX_EPOCH};
+
+/// Why a run could not be recorded. What was written before stays readable.
+#[derive(Debug, thiserror::Error)]
+pub enum RecordError {
+    /// The folder cannot be made, or nothing can be written in it.
+    #[error("cannot write to the run folder {}: {source}; choose a writable place with --out DIR", path.display())]
+    Folder {
+        /// The folder.
+        path: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// The folder holds something already.
+    #[error(
+        "the run folder {} already holds {entry:?}; runs are never overwritten: give a new or an empty folder with --out DIR",
+        path.display()
+    )]
+    NotEmpty {
+        /// The folder.
+        path: PathBuf,
+        /// One of the entries.
+        entry: String,
+    },
+    /// A file cannot be written.
+    #[error(
+        "cannot write {}: {source}; everything recorded before this stays readable; \
+         free some space or choose another place with --out DIR", path.display()
+    )]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// A value has no form in the file's format.
+    #[error("cannot express {what} in {}: {reason}; please report this as a fault of vodca", path.display())]
+    Encode {
+        /// The file.
+        path: PathBuf,
+        /// What was to be written.
+        what: &'static str,
+        /// What the library said.
+        reason: String,
+    },
+}
+
+/// The folder of a run, empty when it was opened.
+#[derive(Debug)]
+pub struct RunFolder {
+    path: PathBuf,
+}
+
+impl RunFolder {
+    /// Makes `out`, or `runs/<UTC time>-<scenario>-<robots>` below the current folder.
+    pub fn create(out: Option<&Path>, scenario: &str, robots: usize) -> Result<Self, RecordError> {
+        match out {
+            Some(path) => Self::at(path),
+            None => Self::fresh(Path::new("runs"), &format!("{}-{}-{robots}", utc_now(), plain(scenario))),
+        }
+    }
+
+    /// The folder `path`, made when absent; it must be empty and writable.
+    pub fn at(path: &Path) -> Result<Self, RecordError> {
+        let refused = |source| RecordError::Folder { path: path.to_owned(), source };
+        fs::create_dir_all(path).map_err(refused)?;
+        if let Some(entry) = fs::read_dir(path).map_err(refused)?.next() {
+            let entry = entry.map_err(refused)?.file_name().to_string_lossy().into_owned();
+            return Err(RecordError::NotEmpty { path: path.to_owned(), entry });
+        }
+        let folder = Self { path: path.to_owned() };
+        // Found out now rather than after the team has started.
+        let trial = folder.file(".writable");
+        File::create(&trial).and_then(|_| fs::remove_file(&trial)).map_err(refused)?;
+        Ok(folder)
+    }
+
+    /// `parent/name`, or `parent/name-2` and so on when another run took that name in the same second.
+    fn fresh(parent: &Path, name: &str) -> Result<Self, RecordError> {
+        fs::create_dir_all(parent).map_err(|source| RecordError::Folder { path: parent.to_owned(), source })?;
+        for attempt in 1.. {
+            let path = parent.join(if attempt == 1 { name.to_owned() } else { format!("{name}-{attempt}") });
+            match fs::create_dir(&path) {
+                Ok(()) => return Self::at(&path),
+                Err(error) if error.kind() == io::ErrorKind::AlreadyExists && attempt < 1000 => {}
+                Err(source) => return Err(RecordError::Folder { path, source }),
+            }
+        }
+        unreachable!("the loop returns at the latest at its thousandth turn")
+    }
+
+    /// Where it lies.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// The path of a file in it.
+    pub fn file(&self, name: &str) -> PathBuf {
+        self.path.join(name)
+    }
+
+    /// Writes a whole file: beside its place first, then renamed, so that a reader (or a cut run) never
+    /// sees half of it.
+    pub fn write(&self, name: &str, content: &[u8]) -> Result<(), RecordError> {
+        let (path, beside) = (self.file(name), self.file(&format!(".{name}.part")));
+        let written = File::create(&beside)
+            .and_then(|mut file| file.write_all(content).and_then(|()| file.sync_all()))
+            .and_then(|()| fs::rename(&beside, &path));
+        written.map_err(|source| {
+            let _ = fs::remove_file(&beside); // best effort: the error that is reported matters more
+            RecordError::Write { path, source }
+        })
+    }
+}
+
+/// A file that grows record by record. When a write fails midway the file is cut back to its last whole
+/// record, so that a full disk leaves a readable file.
+#[derive(Debug)]
+pub struct GrowingFile {
+    path: PathBuf,
+    file: File,
+    whole: u64,
+}
+
+impl GrowingFile {
+    /// Makes the file; it must not exist unless it is a device.
+    pub fn create(path: PathBuf) -> Result<Self, RecordError> {
+        match File::create(&path) {
+            Ok(file) => Ok(Self { path, file, whole: 0 }),
+            Err(source) => Err(RecordError::Write { path, source }),
+        }
+    }
+
+    /// Appends `record` and hands it to the operating system at once.
+    pub fn append(&mut self, record: &[u8]) -> Result<(), RecordError> {
+        match self.file.write_all(record) {
+            Ok(()) => {
+                self.whole += record.len() as u64;
+                Ok(())
+            }
+            Err(source) => {
+                let _ = self.file.set_len(self.whole); // devices cannot be cut; the write error is what counts
+                Err(RecordError::Write { path: self.path.clone(), source })
+            }
+        }
+    }
+
+    /// Its path.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Makes sure that everything is on the disk.
+    pub fn sync(&self) -> Result<(), RecordError> {
+        self.file.sync_all().map_err(|source| RecordError::Write { path: self.path.clone(), source })
+    }
+}
+
+/// `name` as part of a file name: `ring:16` becomes `ring-16`.
+fn plain(name: &str) -> String {
+    name.chars().map(|c| if c.is_ascii_alphanumeric() || c == '_' { c } else { '-' }).collect()
+}
+
+/// The present second in UTC as `20260131-235959`.
+fn utc_now() -> String {
+    let seconds = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs());
+    utc(seconds)
+}
+
+/// Seconds since 1970 as `20260131-235959` (proleptic Gregorian calendar, years counted from March so
+/// that the leap day comes last).
+fn utc(seconds: u64) -> String {
+    let (days, second) = (seconds / 86_400 + 719_468, seconds % 86_400);
+    let era_day = days % 146_097;
+    let era_year = (era_day - era_day / 1_460 + era_day / 36_524 - era_day / 146_096) / 365;
+    let day_of_year = era_day - (365 * era_year + era_year / 4 - era_year / 100);
+    let from_march = (5 * day_of_year + 2) / 153;
+    let day = day_of_year - (153 * from_march + 2) / 5 + 1;
+    let month = if from_march < 10 { from_march + 3 } else { from_march - 9 };
+    let year = days / 146_097 * 400 + era_year + u64::from(month <= 2);
+    let (hour, minute, second) = (second / 3_600, second / 60 % 60, second % 60);
+    format!("{year:04}{month:02}{day:02}-{hour:02}{minute:02}{second:02}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_folder_with_something_in_it_is_refused() {
+        let place = tempfile::tempdir().unwrap();
+        fs::write(place.path().join("old.csv"), "kept").unwrap();
+        let message = RunFolder::at(place.path()).unwrap_err().to_string();
+        assert!(message.contains("old.csv") && message.contains("--out"), "{message}");
+        assert_eq!(fs::read(place.path().join("old.csv")).unwrap(), b"kept");
+    }
+
+    #[test]
+    fn a_folder_that_cannot_be_made_is_one_clear_error() {
+        let place = tempfile::tempdir().unwrap();
+        fs::write(place.path().join("file"), "").unwrap();
+        let message = RunFolder::at(&place.path().join("file/below")).unwrap_err().to_string();
+        assert!(message.starts_with("cannot write to the run folder") && message.contains("--out"), "{message}");
+    }
+
+    #[test]
+    fn two_runs_in_one_second_get_two_folders() {
+        let place = tempfile::tempdir().unwrap();
+        let first = RunFolder::fresh(place.path(), "now-ring-4").unwrap();
+        let second = RunFolder::fresh(place.path(), "now-ring-4").unwrap();
+        assert_ne!(first.path(), second.path());
+        assert!(second.path().ends_with("now-ring-4-2"));
+    }
+
+    #[test]
+    fn a_file_is_whole_and_nothing_stays_beside_it() {
+        let place = tempfile::tempdir().unwrap();
+        let folder = RunFolder::at(&place.path().join("new/run")).unwrap();
+        folder.write("a.txt", b"one").unwrap();
+        folder.write("a.txt", b"two").unwrap();
+        assert_eq!(fs::read(folder.file("a.txt")).unwrap(), b"two");
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn a_full_disk_is_one_clear_error() {
+        let mut file = GrowingFile::create(PathBuf::from("/dev/full")).unwrap();
+        let message = file.append(b"row\n").unwrap_err().to_string();
+        assert!(message.contains("/dev/full") && message.contains("stays readable"), "{message}");
+    }
+
+    #[test]
+    fn dates_are_those_of_the_calendar() {
+        assert_eq!(utc(0), "19700101-000000");
+        assert_eq!(utc(951_827_696), "20000229-123456");
+        assert_eq!(utc(1_798_761_599), "20261231-235959");
+    }
+
+    #[test]
+    fn scenario_names_become_plain_file_names() {
+        assert_eq!(plain("box:16:3:7"), "box-16-3-7");
+        assert_eq!(plain("../x"), "---x");
+    }
+}

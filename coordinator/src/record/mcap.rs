@@ -1,0 +1,233 @@
+//! `run.mcap`: the run as a film for Foxglove, Lichtblick and Rerun. The only file that imports `mcap`.
+//!
+//! | topic | schema | when |
+//! |---|---|---|
+//! | `/layout` | `foxglove.SceneUpdate` | once: obstacles and set-points |
+//! | `/scene` | `foxglove.SceneUpdate` | every tick: discs with their number, predicted paths |
+//! | `/poses` | `foxglove.PosesInFrame` | every tick: positions (Rerun shows these, it has no SceneUpdate) |
+//! | `/team` | `vodca.Team`, JSON | every tick: the values of `trajectory.csv` and more, for plots |
+//!
+//! Why not the `foxglove` crate: it would add some ninety crates and a minute of build time for three
+//! message types. The published descriptors lie beside this file and go into every log, the messages
+//! are written by `scene.rs`; Foxglove's own Python decoder reads them back.
+//!
+//! Log time is `tick * sample_time` from 0 and nothing measured goes in, so two equal runs give equal bytes.
+//! Chunks are written whole every [`TICKS_PER_CHUNK`] ticks: a log cut at any byte reads in stream order
+//! up to its last whole chunk.
+
+use super::folder::RecordError;
+use super::protobuf::Message;
+use super::scene;
+use super::trajectory::{level_word, status_word};
+use mcap::records::MessageHeader;
+use mcap::{Compression, McapError, WriteOptions, Writer};
+use serde_json::json;
+use shared::params::Params;
+use shared::scenario::Scenario;
+use shared::step::Step;
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::path::PathBuf;
+
+/// Name of the file in a run folder.
+pub const FILE: &str = "run.mcap";
+/// Ticks per chunk: 5 s of the run, what a cut log loses at most.
+const TICKS_PER_CHUNK: u64 = 25;
+
+/// Writes the log tick by tick.
+pub struct LogWriter {
+    path: PathBuf,
+    writer: Writer<File>,
+    layout: u16,
+    scene: u16,
+    poses: u16,
+    team: u16,
+    sample_time: f64,
+}
+
+impl LogWriter {
+    /// Starts the log: schemas, channels and the layout.
+    pub fn create(path: PathBuf, scenario: &Scenario, params: &Params) -> Result<Self, RecordError> {
+        let file = match File::create(&path) {
+            Ok(file) => file,
+            Err(source) => return Err(RecordError::Write { path, source }),
+        };
+        match Self::start(path.clone(), file, scenario, params) {
+            Ok(log) => Ok(log),
+            Err(error) => Err(record_error(path, error)),
+        }
+    }
+
+    fn start(path: PathBuf, file: File, scenario: &Scenario, params: &Params) -> Result<Self, McapError> {
+        let mut writer = WriteOptions::new()
+            .compression(Some(Compression::Lz4))
+            .chunk_size(None)
+            .disable_seeking(true) // a chunk reaches the file whole or not at all
+            .library(concat!("vodca ", env!("CARGO_PKG_VERSION")))
+            .create(file)?;
+        let mut channel = |topic, schema, schema_encoding, data, encoding| {
+            let schema = writer.add_schema(schema, schema_encoding, data)?;
+            writer.add_channel(schema, topic, encoding, &BTreeMap::new())
+        };
+        let layout = channel("/layout", "foxglove.SceneUpdate", "protobuf", scene::SCENE_UPDATE, "protobuf")?;
+        let moving = channel("/scene", "foxglove.SceneUpdate", "protobuf", scene::SCENE_UPDATE, "protobuf")?;
+        let poses = channel("/poses", "foxglove.PosesInFrame", "protobuf", scene::POSES_IN_FRAME, "protobuf")?;
+        let team = channel("/team", "vodca.Team", "jsonschema", team_schema().as_bytes(), "json")?;
+        let sample_time = params.model.sample_time;
+        let mut log = Self { path, writer, layout, scene: moving, poses, team, sample_time };
+        log.put(log.layout, 0, scene::layout(scenario, params).bytes())?;
+        Ok(log)
+    }
+
+    /// Appends one tick.
+    pub fn tick(
+        &mut self,
+        scenario: &Scenario,
+        params: &Params,
+        tick: u64,
+        steps: &[Step],
+    ) -> Result<(), RecordError> {
+        let time = self.nanoseconds(tick);
+        let scene: Message = scene::team(scenario, params, time, steps);
+        let poses = scene::poses(time, steps);
+        let team = team_values(scenario, tick, steps).to_string();
+        self.put(self.scene, tick, scene.bytes())
+            .and_then(|()| self.put(self.poses, tick, poses.bytes()))
+            .and_then(|()| self.put(self.team, tick, team.as_bytes()))
+            .and_then(|()| if (tick + 1).is_multiple_of(TICKS_PER_CHUNK) { self.writer.flush() } else { Ok(()) })
+            .map_err(|error| record_error(self.path.clone(), error))
+    }
+
+    /// Writes the index; without it a log still reads in stream order.
+    pub fn finish(mut self) -> Result<(), RecordError> {
+        match self.writer.finish() {
+            Ok(_) => Ok(()),
+            Err(error) => Err(record_error(self.path.clone(), error)),
+        }
+    }
+
+    fn put(&mut self, channel_id: u16, tick: u64, data: &[u8]) -> Result<(), McapError> {
+        let log_time = self.nanoseconds(tick);
+        let header = MessageHeader { channel_id, sequence: tick as u32, log_time, publish_time: log_time };
+        self.writer.write_to_known_channel(&header, data)
+    }
+
+    fn nanoseconds(&self, tick: u64) -> u64 {
+        (tick as f64 * self.sample_time * 1e9).round() as u64
+    }
+}
+
+fn record_error(path: PathBuf, error: McapError) -> RecordError {
+    match error {
+        McapError::Io(source) => RecordError::Write { path, source },
+        other => RecordError::Encode { path, what: "a log record", reason: other.to_string() },
+    }
+}
+
+/// The message on `/team`.
+fn team_values(scenario: &Scenario, tick: u64, steps: &[Step]) -> serde_json::Value {
+    let robots: Vec<_> = steps
+        .iter()
+        .zip(&scenario.robots)
+        .map(|(step, robot)| {
+            json!({
+                "x": step.position.x, "y": step.position.y, "ux": step.input.x, "uy": step.input.y,
+                "distance": (robot.set_point - step.position).norm(),
+                "horizon": step.horizon, "rows": step.rows,
+                "level": level_word(step.level), "status": status_word(step.status), "shielded": step.shielded,
+            })
+        })
+        .collect();
+    json!({ "tick": tick, "robots": robots })
+}
+
+/// JSON schema of [`team_values`].
+fn team_schema() -> String {
+    let number = |what| json!({ "type": "number", "description": what });
+    let integer = |what| json!({ "type": "integer", "description": what });
+    let word = |what| json!({ "type": "string", "description": what });
+    json!({
+        "title": "vodca.Team",
+        "type": "object",
+        "properties": {
+            "tick": integer("k"),
+            "robots": { "type": "array", "items": { "type": "object", "properties": {
+                "x": number("position at the start of the tick, m"),
+                "y": number("position at the start of the tick, m"),
+                "ux": number("input applied during the tick, m/s"),
+                "uy": number("input applied during the tick, m/s"),
+                "distance": number("to the set-point at the start of the tick, m"),
+                "horizon": integer("prediction steps, 1..=49"),
+                "rows": integer("collision rows of the QP"),
+                "level": word("rung of the solver ladder that gave the plan"),
+                "status": word("how the plan came about"),
+                "shielded": { "type": "boolean", "description": "whether the last check changed the input" },
+            }}},
+        },
+    })
+    .to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::samples;
+    use super::*;
+
+    fn record(path: PathBuf, ticks: u64) -> Vec<u8> {
+        let (scenario, params) = (samples::scenario(3), Params::paper());
+        let mut log = LogWriter::create(path.clone(), &scenario, &params).unwrap();
+        for tick in 0..ticks {
+            log.tick(&scenario, &params, tick, &samples::steps(3, tick)).unwrap();
+        }
+        log.finish().unwrap();
+        std::fs::read(path).unwrap()
+    }
+
+    #[test]
+    fn a_log_reads_back_with_time_from_zero() {
+        let place = tempfile::tempdir().unwrap();
+        let bytes = record(place.path().join(FILE), 60);
+        let messages: Vec<_> = mcap::read::MessageStream::new(&bytes).unwrap().map(Result::unwrap).collect();
+        assert_eq!(messages.len(), 1 + 3 * 60);
+        assert_eq!(messages[0].channel.topic, "/layout");
+        assert_eq!(messages[0].log_time, 0);
+        let last = messages.last().unwrap();
+        assert_eq!((last.channel.topic.as_str(), last.log_time), ("/team", 59 * 200_000_000));
+        let values: serde_json::Value = serde_json::from_slice(&last.data).unwrap();
+        assert_eq!((&values["tick"], &values["robots"][2]["horizon"]), (&json!(59), &json!(3)));
+    }
+
+    #[test]
+    fn equal_runs_give_equal_bytes() {
+        let place = tempfile::tempdir().unwrap();
+        assert!(record(place.path().join("a"), 60) == record(place.path().join("b"), 60));
+    }
+
+    #[test]
+    fn a_cut_log_reads_up_to_its_last_whole_chunk() {
+        let place = tempfile::tempdir().unwrap();
+        let path = place.path().join(FILE);
+        let (scenario, params) = (samples::scenario(3), Params::paper());
+        let mut log = LogWriter::create(path.clone(), &scenario, &params).unwrap();
+        for tick in 0..60 {
+            log.tick(&scenario, &params, tick, &samples::steps(3, tick)).unwrap();
+        }
+        let cut = std::fs::read(&path).unwrap(); // no finish(): as after a kill
+        let options = mcap::read::Options::IgnoreEndMagic.into();
+        let readable = |bytes: &[u8]| {
+            let stream = mcap::read::MessageStream::new_with_options(bytes, options).unwrap();
+            stream.take_while(Result::is_ok).count()
+        };
+        assert_eq!(readable(&cut), 1 + 3 * 50);
+        assert_eq!(readable(&cut[..cut.len() - 7]), 1 + 3 * 25);
+    }
+
+    #[test]
+    fn a_full_disk_is_one_clear_error() {
+        let (scenario, params) = (samples::scenario(3), Params::paper());
+        let outcome = LogWriter::create(PathBuf::from("/dev/full"), &scenario, &params)
+            .and_then(|mut log| (0..200).try_for_each(|k| log.tick(&scenario, &params, k, &samples::steps(3, k))));
+        let message = outcome.unwrap_err().to_string();
+        assert!(message.contains("/dev/full"), "{message}");
+    }
+}
