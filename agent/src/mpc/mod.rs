@@ -1,2 +1,11 @@
 //! The robot's quadratic program and the ladder of its solvers.
+//!
+//! [`problem`] states the program once; every solver builds what suits it. [`stacked`] is the
+//! paper's formulation, which the tests compare against.
+
+pub mod clarabel;
+pub mod closed_form;
+pub mod kkt;
+pub mod polish;
 pub mod problem;
+pub mod stacked;
