@@ -7,9 +7,7 @@
 use super::polish;
 use super::problem::{Effort, Plan, Problem, QpSolver, SolveError};
 use ::clarabel::algebra::CscMatrix;
-use ::clarabel::solver::{
-    DefaultSettings, DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus, SupportedConeT,
-};
+use ::clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus, SupportedConeT};
 use shared::Input;
 
 /// Clarabel with the settings that suit this QP.

@@ -6,6 +6,8 @@
 pub mod clarabel;
 pub mod closed_form;
 pub mod kkt;
+pub mod ladder;
 pub mod polish;
 pub mod problem;
+pub mod sample;
 pub mod stacked;

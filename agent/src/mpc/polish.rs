@@ -122,7 +122,8 @@ impl Guess {
         let factor = Cholesky::new(hessian.select_rows(&free).select_columns(&free))?;
         let lines = dense.rows.select_rows(&tight).select_columns(&free);
         let unconstrained = -factor.solve(&pull.select_rows(&free));
-        let missing = &lines * &unconstrained + &dense.rows.select_rows(&tight) * &fixed - dense.limits.select_rows(&tight);
+        let missing =
+            &lines * &unconstrained + &dense.rows.select_rows(&tight) * &fixed - dense.limits.select_rows(&tight);
         let mut prices = DVector::zeros(self.rows.len());
         let mut moved = unconstrained;
         if !tight.is_empty() {
@@ -147,7 +148,13 @@ impl Guess {
     }
 
     /// Changes the one entry of the guess that the solution contradicts most; `false`: none.
-    fn correct(&mut self, problem: &Problem<'_>, dense: &Stacked, inputs: &DVector<f64>, prices: &DVector<f64>) -> bool {
+    fn correct(
+        &mut self,
+        problem: &Problem<'_>,
+        dense: &Stacked,
+        inputs: &DVector<f64>,
+        prices: &DVector<f64>,
+    ) -> bool {
         let curvature = 2.0 * problem.input_weight;
         let gradient = &dense.hessian * inputs + &dense.gradient + dense.rows.tr_mul(prices);
         let excess = &dense.rows * inputs - &dense.limits;

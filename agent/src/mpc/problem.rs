@@ -65,12 +65,11 @@ impl Problem<'_> {
         finite(&self.position)
             && self.target.states[..steps].iter().all(finite)
             && self.target.inputs[..steps].iter().all(finite)
-            && self.rows.iter().all(|row| {
-                finite(&row.normal) && row.offset.is_finite() && (1..=steps).contains(&row.step)
-            })
-            && [self.state_weight, self.slack.linear, self.slack.quadratic]
+            && self
+                .rows
                 .iter()
-                .all(|v| v.is_finite() && *v >= 0.0)
+                .all(|row| finite(&row.normal) && row.offset.is_finite() && (1..=steps).contains(&row.step))
+            && [self.state_weight, self.slack.linear, self.slack.quadratic].iter().all(|v| v.is_finite() && *v >= 0.0)
             && [self.sample_time, self.max_speed, self.input_weight].iter().all(|v| v.is_finite() && *v > 0.0)
     }
 }

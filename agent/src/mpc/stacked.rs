@@ -58,12 +58,7 @@ impl Stacked {
     }
 
     /// `normal' x[step] >= offset` as `-normal' Phi_step U <= normal' F_step x - offset`.
-    fn row(
-        row: &Row,
-        free: &DMatrix<f64>,
-        forced: &DMatrix<f64>,
-        position: &DVector<f64>,
-    ) -> (DVector<f64>, f64) {
+    fn row(row: &Row, free: &DMatrix<f64>, forced: &DMatrix<f64>, position: &DVector<f64>) -> (DVector<f64>, f64) {
         let block = 2 * (row.step - 1);
         let line = -forced.rows(block, 2).tr_mul(&row.normal);
         let present: Matrix2<f64> = free.fixed_view::<2, 2>(block, 0).into_owned();
