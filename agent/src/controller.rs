@@ -5,6 +5,32 @@ use shared::prediction::Prediction;
 use shared::step::{Level, Status};
 use shared::{Input, Position};
 
+/// What a robot knows of another one: the newest it heard, with the tick it belongs to.
+#[derive(Clone, Debug)]
+pub struct Neighbour {
+    /// Newest plan and the tick `k - 1` it was computed at. `None`: no plan was ever heard.
+    pub plan: Option<(u64, Prediction)>,
+    /// Newest broadcast position and the tick at whose start the robot was there.
+    /// `None`: never heard.
+    pub present: Option<(u64, Position)>,
+    /// Where it wants to go.
+    pub set_point: Position,
+}
+
+impl Neighbour {
+    /// What everybody knows of everybody before the first tick: the start and the set-point.
+    pub fn at_start(start: Position, set_point: Position) -> Self {
+        Self { plan: None, present: Some((0, start)), set_point }
+    }
+
+    /// Takes the plan computed at `tick`; its state(1) is the robot's position at `tick + 1`.
+    pub fn hear(&mut self, tick: u64, plan: &Prediction) {
+        self.present = Some((tick + 1, plan.state(1)));
+        self.set_point = plan.set_point;
+        self.plan = Some((tick, plan.clone()));
+    }
+}
+
 /// What a robot knows when it plans tick `k`.
 #[derive(Clone, Copy, Debug)]
 pub struct View<'a> {
@@ -14,9 +40,9 @@ pub struct View<'a> {
     pub horizon: Horizon,
     /// Own measured position, m.
     pub position: Position,
-    /// Every robot's prediction of tick `k - 1`, by robot number; own entry included and ignored.
-    /// `None`: nothing was ever heard of it (at tick 0: of anybody).
-    pub predictions: &'a [Option<Prediction>],
+    /// All robots by number; the own entry is included and ignored. In an undisturbed run every plan
+    /// is of tick `k - 1` (Jacobi exchange: nobody sees a plan of tick `k`).
+    pub neighbours: &'a [Neighbour],
 }
 
 /// What a robot decides in a tick.
@@ -26,7 +52,7 @@ pub struct Decision {
     pub input: Input,
     /// The plan to publish; `plan.state(0)` is the measured position.
     pub plan: Prediction,
-    /// Collision rows of the QP.
+    /// Collision rows of the QP (cell rows are not counted).
     pub rows: u32,
     /// Rung of the ladder that gave the plan.
     pub level: Level,

@@ -22,6 +22,8 @@ pub enum Use {
     StartJitter = 6,
     /// Samples of a stochastic policy.
     Policy = 7,
+    /// Random QPs for tests and benchmarks.
+    Problem = 8,
 }
 
 /// The generator of one `(seed, use, a, b)` coordinate, positioned at its first draw.

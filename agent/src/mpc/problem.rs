@@ -16,6 +16,13 @@ pub struct Row {
     pub hard: bool,
 }
 
+impl Row {
+    /// Signed distance of `position` from the row's half plane, m; negative where it is violated.
+    pub fn gap(&self, position: &Position) -> f64 {
+        self.normal.dot(position) - self.offset
+    }
+}
+
 /// Price of violating a soft row by `e` metres: `linear * e + quadratic / 2 * e^2` (method.md, section 3).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SlackPrice {
@@ -49,6 +56,24 @@ pub struct Problem<'a> {
     pub input_weight: f64,
 }
 
+impl Problem<'_> {
+    /// Whether every number of the problem is finite and every row's step lies in 1..=N. Solvers
+    /// give up at once where this does not hold.
+    pub fn is_well_posed(&self) -> bool {
+        let steps = self.horizon.steps();
+        let finite = |v: &Position| v.x.is_finite() && v.y.is_finite();
+        finite(&self.position)
+            && self.target.states[..steps].iter().all(finite)
+            && self.target.inputs[..steps].iter().all(finite)
+            && self
+                .rows
+                .iter()
+                .all(|row| finite(&row.normal) && row.offset.is_finite() && (1..=steps).contains(&row.step))
+            && [self.state_weight, self.slack.linear, self.slack.quadratic].iter().all(|v| v.is_finite() && *v >= 0.0)
+            && [self.sample_time, self.max_speed, self.input_weight].iter().all(|v| v.is_finite() && *v > 0.0)
+    }
+}
+
 /// The targets of state and input at every step.
 #[derive(Clone, Debug)]
 pub struct Target {
@@ -79,6 +104,34 @@ pub struct Plan {
 impl Default for Plan {
     fn default() -> Self {
         Self { inputs: [Input::zeros(); MAX_HORIZON] }
+    }
+}
+
+impl Plan {
+    /// Puts `x[l + 1]` at index `l < N` of `states`, by the model from `problem.position`.
+    pub fn roll_out(&self, problem: &Problem<'_>, states: &mut [Position; MAX_HORIZON]) {
+        let mut state = problem.position;
+        let steps = problem.horizon.steps();
+        for (next, input) in states[..steps].iter_mut().zip(&self.inputs) {
+            state += input * problem.sample_time;
+            *next = state;
+        }
+    }
+
+    /// Cost of the inputs, slack included (hard rows are not looked at).
+    pub fn cost(&self, problem: &Problem<'_>) -> f64 {
+        let mut states = [Position::zeros(); MAX_HORIZON];
+        self.roll_out(problem, &mut states);
+        let mut cost = 0.0;
+        for l in 0..problem.horizon.steps() {
+            cost += problem.state_weight * (states[l] - problem.target.states[l]).norm_squared();
+            cost += problem.input_weight * (self.inputs[l] - problem.target.inputs[l]).norm_squared();
+        }
+        for row in problem.rows.iter().filter(|row| !row.hard) {
+            let excess = (-row.gap(&states[row.step - 1])).max(0.0);
+            cost += excess * (problem.slack.linear + 0.5 * problem.slack.quadratic * excess);
+        }
+        cost
     }
 }
 
