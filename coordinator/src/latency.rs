@@ -1,0 +1,85 @@
+//! Distributions of durations. The only file that imports `hdrhistogram`.
+
+use hdrhistogram::Histogram;
+use serde::{Deserialize, Serialize};
+use std::time::Duration;
+
+/// A distribution of durations from 1 ns to a minute, exact to 0.1 %; longer ones count as a minute.
+#[derive(Clone, Debug)]
+pub struct Latency(Histogram<u64>);
+
+const LONGEST: u64 = 60_000_000_000; // ns
+const LOWEST: u64 = 1; // ns
+const DIGITS: u8 = 3;
+
+/// The figures of a distribution, microseconds.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Percentiles {
+    /// Number of durations.
+    pub count: u64,
+    /// Half are no longer than this, us.
+    pub p50_us: f64,
+    /// 99 % are no longer than this, us.
+    pub p99_us: f64,
+    /// The longest, us.
+    pub max_us: f64,
+}
+
+impl Latency {
+    /// An empty distribution.
+    pub fn new() -> Self {
+        match Histogram::new_with_bounds(LOWEST, LONGEST, DIGITS) {
+            Ok(histogram) => Self(histogram),
+            Err(error) => unreachable!("the bounds are constants that the library accepts: {error}"),
+        }
+    }
+
+    /// Adds one duration.
+    pub fn record(&mut self, duration: Duration) {
+        self.record_ns(u64::try_from(duration.as_nanos()).unwrap_or(LONGEST));
+    }
+
+    /// Adds one duration in ns.
+    pub fn record_ns(&mut self, nanoseconds: u64) {
+        self.0.saturating_record(nanoseconds.clamp(LOWEST, LONGEST));
+    }
+
+    /// The figures so far; all 0 when nothing was recorded.
+    pub fn percentiles(&self) -> Percentiles {
+        if self.0.is_empty() {
+            return Percentiles::default();
+        }
+        let at = |quantile| self.0.value_at_quantile(quantile) as f64 / 1e3;
+        Percentiles { count: self.0.len(), p50_us: at(0.5), p99_us: at(0.99), max_us: self.0.max() as f64 / 1e3 }
+    }
+}
+
+impl Default for Latency {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn percentiles_are_within_a_thousandth() {
+        let mut latency = Latency::new();
+        (1..=1000).for_each(|n| latency.record(Duration::from_micros(n)));
+        let figures = latency.percentiles();
+        assert_eq!(figures.count, 1000);
+        assert!((figures.p50_us - 500.0).abs() <= 1.0, "{figures:?}");
+        assert!((figures.p99_us - 990.0).abs() <= 2.0, "{figures:?}");
+        assert!((figures.max_us - 1000.0).abs() <= 2.0, "{figures:?}");
+    }
+
+    #[test]
+    fn nothing_recorded_gives_zeros_and_long_ones_count_as_a_minute() {
+        let mut latency = Latency::new();
+        assert_eq!(latency.percentiles(), Percentiles::default());
+        latency.record(Duration::from_secs(3600));
+        assert!((latency.percentiles().max_us / 60e6 - 1.0).abs() < 2e-3);
+    }
+}
