@@ -1,0 +1,10 @@
+//! The subcommands: each file holds one command's arguments and its work.
+
+pub mod compare;
+pub mod golden;
+pub mod params;
+pub mod replay;
+pub mod run;
+pub mod scenario;
+pub mod sweep;
+pub mod verify;
