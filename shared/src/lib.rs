@@ -11,6 +11,7 @@ pub mod random;
 pub mod scenario;
 pub mod separation;
 pub mod step;
+pub mod suggest;
 
 /// A point in the plane, metres, world frame.
 pub type Position = nalgebra::Vector2<f64>;

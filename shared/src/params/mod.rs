@@ -2,8 +2,17 @@
 //!
 //! A run uses one [`Params`]: a profile (`paper`, `safe`), overlaid by the scenario's `[params]`
 //! table, overlaid by `--set KEY=VALUE`. The effective values go into the run folder.
+//! [`table`] holds what is known about each value: unit, range, source and effect.
+
+mod overlay;
+mod profile;
+pub mod table;
+
+pub use overlay::OverlayError;
+pub use profile::{Profile, UnknownProfile};
 
 use serde::{Deserialize, Serialize};
+use table::Refusal;
 
 /// All parameters of a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -207,61 +216,109 @@ pub struct Episode {
     pub collision_factor: f64,
 }
 
-/// The named parameter sets.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Profile {
-    /// The paper's method, read as method.md says.
-    Paper,
-    /// Full separation by construction, and everyone arrives (safe.md).
-    Safe,
+/// Why a file of effective parameters cannot be used.
+#[derive(Debug, thiserror::Error)]
+pub enum ParamsFileError {
+    /// Not TOML, or fields that are missing, unknown or of the wrong type.
+    #[error("{file}: {message}")]
+    Malformed {
+        /// Where the text came from.
+        file: String,
+        /// Line, caret and accepted names, from the TOML reader.
+        message: String,
+    },
+    /// A value outside its range.
+    #[error("{file}: {refusal}")]
+    Refused {
+        /// Where the text came from.
+        file: String,
+        /// The value and what is allowed.
+        refusal: Refusal,
+    },
 }
 
 impl Params {
-    /// The paper's method (method.md, section 3).
-    pub fn paper() -> Self {
-        Self {
-            model: Model { sample_time: 0.2, max_speed: 1.5, min_separation: 1.5 },
-            mpc: Mpc { state_weight: 5.0, input_weight: 10.0, reference: Reference::SetPoint },
-            vodca: Vodca {
-                rows: RowChoice::First,
-                row_step: RowStep::Conflict,
-                beyond_horizon: BeyondHorizon::Clamp,
-                first_compared_step: 1,
-                tie: Tie::Nearest,
-                nearby_factor: 1.5,
-                turn: 0.0,
-                softness: Softness::Hard,
-                infeasible: Infeasible::Relax,
-                slack_linear: 1e5,
-                slack_quadratic: 1e3,
-            },
-            aim: Aim { angle: 0.0, memory: 0.1, fade_start: 1.5, fade_end: 4.5 },
-            give_way: GiveWay { radius: 0.0, clearance: 0.1 },
-            cell: Cell { enabled: false, separation: 1.5, escape: 0.0 },
-            horizon: HorizonParams { jitter: 0 },
-            episode: Episode { arrival_tolerance: 0.1, collision_factor: 0.5 },
+    /// Checks every value against its range in [`table::ENTRIES`] and the few relations between values.
+    pub fn validate(&self) -> Result<(), Refusal> {
+        for (entry, value) in table::values(self) {
+            entry.check(&value)?;
+        }
+        if self.aim.fade_end <= self.aim.fade_start {
+            return Err(Refusal {
+                key: "aim.fade_end",
+                value: self.aim.fade_end.to_string(),
+                allowed: format!("a number above aim.fade_start = {}", self.aim.fade_start),
+                unit: "m",
+            });
+        }
+        Ok(())
+    }
+
+    /// All values as TOML; [`Params::from_toml`] reads the same f64 back.
+    pub fn to_toml(&self) -> String {
+        let header = "# Effective parameters: profile, overlaid by the scenario, overlaid by --set.\n\n";
+        // Plain numbers, strings and booleans in two levels of tables always have a TOML form.
+        header.to_string() + &toml::to_string(self).unwrap_or_default()
+    }
+
+    /// Reads what [`Params::to_toml`] wrote; every field must be there. `file` is named in errors.
+    pub fn from_toml(text: &str, file: &str) -> Result<Self, ParamsFileError> {
+        let params: Self = toml::from_str(text)
+            .map_err(|error| ParamsFileError::Malformed { file: file.into(), message: error.to_string() })?;
+        params.validate().map_err(|refusal| ParamsFileError::Refused { file: file.into(), refusal })?;
+        Ok(params)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn both_profiles_are_valid() {
+        for params in [Params::paper(), Params::safe()] {
+            assert_eq!(params.validate(), Ok(()));
         }
     }
 
-    /// The safe controller (safe.md, section 1).
-    pub fn safe() -> Self {
-        let mut params = Self::paper();
-        params.mpc.reference = Reference::Straight;
-        params.vodca.rows = RowChoice::Each;
-        params.vodca.turn = 0.35;
-        params.vodca.softness = Softness::Soft;
-        params.aim.angle = 0.35;
-        params.give_way.radius = 1.5;
-        params.cell.enabled = true;
-        params
+    #[test]
+    fn a_value_out_of_range_is_named_with_its_range_and_unit() {
+        let mut params = Params::safe();
+        params.model.sample_time = -0.2;
+        let message = params.validate().unwrap_err().to_string();
+        assert_eq!(
+            message,
+            "parameter model.sample_time = -0.2 is not allowed; allowed: a number above 0, at most 10 (unit: s)"
+        );
+        params.model.sample_time = f64::NAN;
+        assert!(params.validate().unwrap_err().to_string().contains("= NaN is not allowed"));
     }
 
-    /// The parameters of a profile.
-    pub fn of(profile: Profile) -> Self {
-        match profile {
-            Profile::Paper => Self::paper(),
-            Profile::Safe => Self::safe(),
+    #[test]
+    fn the_fade_must_end_after_it_starts() {
+        let mut params = Params::safe();
+        params.aim.fade_end = params.aim.fade_start;
+        assert!(params.validate().unwrap_err().to_string().contains("above aim.fade_start = 1.5"));
+    }
+
+    #[test]
+    fn a_file_with_an_unknown_field_shows_the_line_and_the_names() {
+        let text = Params::safe().to_toml().replace("turn = ", "trun = ");
+        let message = Params::from_toml(&text, "params.toml").unwrap_err().to_string();
+        for part in ["params.toml:", "line ", "unknown field `trun`", "`turn`", "^"] {
+            assert!(message.contains(part), "{part} is not in:\n{message}");
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn toml_reads_back_to_the_same_bits(time in 1e-9f64..10.0, weight in 1e-300f64..1e6, jitter in 0u64..=48) {
+            let mut params = Params::safe();
+            params.model.sample_time = time;
+            params.mpc.state_weight = weight;
+            params.horizon.jitter = jitter;
+            prop_assert_eq!(Params::from_toml(&params.to_toml(), "p").unwrap(), params);
         }
     }
 }

@@ -1,0 +1,103 @@
+//! The named parameter sets.
+
+use super::*;
+use std::fmt;
+use std::str::FromStr;
+
+/// The named parameter sets.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Profile {
+    /// The paper's method, read as method.md says.
+    Paper,
+    /// Full separation by construction, and everyone arrives (safe.md).
+    Safe,
+}
+
+/// A profile nobody knows.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("unknown profile `{0}`; the profiles are: paper, safe")]
+pub struct UnknownProfile(pub String);
+
+impl FromStr for Profile {
+    type Err = UnknownProfile;
+    fn from_str(name: &str) -> Result<Self, UnknownProfile> {
+        match name {
+            "paper" => Ok(Self::Paper),
+            "safe" => Ok(Self::Safe),
+            other => Err(UnknownProfile(other.into())),
+        }
+    }
+}
+
+impl fmt::Display for Profile {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Self::Paper => "paper",
+            Self::Safe => "safe",
+        })
+    }
+}
+
+impl Params {
+    /// The paper's method (method.md, section 3).
+    pub fn paper() -> Self {
+        Self {
+            model: Model { sample_time: 0.2, max_speed: 1.5, min_separation: 1.5 },
+            mpc: Mpc { state_weight: 5.0, input_weight: 10.0, reference: Reference::SetPoint },
+            vodca: Vodca {
+                rows: RowChoice::First,
+                row_step: RowStep::Conflict,
+                beyond_horizon: BeyondHorizon::Clamp,
+                first_compared_step: 1,
+                tie: Tie::Nearest,
+                nearby_factor: 1.5,
+                turn: 0.0,
+                softness: Softness::Hard,
+                infeasible: Infeasible::Relax,
+                slack_linear: 1e5,
+                slack_quadratic: 1e3,
+            },
+            aim: Aim { angle: 0.0, memory: 0.1, fade_start: 1.5, fade_end: 4.5 },
+            give_way: GiveWay { radius: 0.0, clearance: 0.1 },
+            cell: Cell { enabled: false, separation: 1.5, escape: 0.0 },
+            horizon: HorizonParams { jitter: 0 },
+            episode: Episode { arrival_tolerance: 0.1, collision_factor: 0.5 },
+        }
+    }
+
+    /// The safe controller (safe.md, section 1).
+    pub fn safe() -> Self {
+        let mut params = Self::paper();
+        params.mpc.reference = Reference::Straight;
+        params.vodca.rows = RowChoice::Each;
+        params.vodca.turn = 0.35;
+        params.vodca.softness = Softness::Soft;
+        params.aim.angle = 0.35;
+        params.give_way.radius = 1.5;
+        params.cell.enabled = true;
+        params
+    }
+
+    /// The parameters of a profile.
+    pub fn of(profile: Profile) -> Self {
+        match profile {
+            Profile::Paper => Self::paper(),
+            Profile::Safe => Self::safe(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn profiles_are_known_by_the_names_they_print() {
+        for profile in [Profile::Paper, Profile::Safe] {
+            assert_eq!(profile.to_string().parse(), Ok(profile));
+        }
+        let message = "fast".parse::<Profile>().unwrap_err().to_string();
+        assert_eq!(message, "unknown profile `fast`; the profiles are: paper, safe");
+    }
+}

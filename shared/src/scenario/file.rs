@@ -1,0 +1,259 @@
+//! The scenario file, version 1, and its exact copy. Documented in `scenarios/README.md`.
+
+use super::{DEFAULT_MAX_TICKS, Obstacle, Robot, Scenario, ScenarioError};
+use crate::Position;
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct File {
+    version: u64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    name: Option<String>,
+    #[serde(default = "default_max_ticks")]
+    max_ticks: u64,
+    #[serde(default)]
+    seed: u64,
+    #[serde(default)]
+    allow_close_start: bool,
+    #[serde(default)]
+    robot: Vec<FileRobot>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    obstacle: Vec<FileObstacle>,
+    #[serde(default, skip_serializing_if = "toml::Table::is_empty")]
+    params: toml::Table,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct FileRobot {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    name: Option<String>,
+    start: Point,
+    set_point: Point,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    radius: Option<f64>,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct FileObstacle {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    name: Option<String>,
+    position: Point,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    radius: Option<f64>,
+}
+
+/// `[x, y]` in metres. A list of its own type because the TOML reader drops what is too many for an array.
+#[derive(Clone, Serialize, Deserialize)]
+#[serde(try_from = "Vec<f64>", into = "[f64; 2]")]
+struct Point([f64; 2]);
+
+impl TryFrom<Vec<f64>> for Point {
+    type Error = String;
+    fn try_from(list: Vec<f64>) -> Result<Self, String> {
+        let count = list.len();
+        list.try_into().map(Self).map_err(|_| format!("expected [x, y] in metres, found {count} numbers"))
+    }
+}
+
+impl From<Point> for [f64; 2] {
+    fn from(point: Point) -> Self {
+        point.0
+    }
+}
+
+fn default_max_ticks() -> u64 {
+    DEFAULT_MAX_TICKS
+}
+
+/// The name of a robot that has none in the file.
+pub(super) fn robot_name(index: usize) -> String {
+    format!("robot-{index}")
+}
+
+/// The name of an obstacle that has none in the file.
+pub(super) fn obstacle_name(index: usize) -> String {
+    format!("obstacle-{index}")
+}
+
+impl Scenario {
+    /// Reads and checks a scenario file; its name is the file's stem unless it says otherwise.
+    pub fn load(path: &Path) -> Result<Self, ScenarioError> {
+        let text =
+            std::fs::read_to_string(path).map_err(|source| ScenarioError::Unreadable { file: path.into(), source })?;
+        let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+        Self::from_toml(&text, &stem, &path.display().to_string())
+    }
+
+    /// Reads and checks the text of a scenario file. `name` is used when the text has none; `file` is
+    /// named in errors.
+    pub fn from_toml(text: &str, name: &str, file: &str) -> Result<Self, ScenarioError> {
+        let malformed =
+            |error: toml::de::Error| ScenarioError::Malformed { file: file.into(), message: error.to_string() };
+        // The version first: the fields of another version would only confuse.
+        let table: toml::Table = text.parse().map_err(malformed)?;
+        match table.get("version") {
+            None | Some(toml::Value::Integer(1)) => {}
+            Some(other) => return Err(ScenarioError::Version { file: file.into(), version: other.to_string() }),
+        }
+        let parsed: File = toml::from_str(text).map_err(malformed)?;
+        let scenario = Self {
+            name: parsed.name.unwrap_or_else(|| name.into()),
+            robots: parsed
+                .robot
+                .into_iter()
+                .enumerate()
+                .map(|(i, robot)| Robot {
+                    name: robot.name.unwrap_or_else(|| robot_name(i)),
+                    start: robot.start.0.into(),
+                    set_point: robot.set_point.0.into(),
+                    radius: robot.radius,
+                })
+                .collect(),
+            obstacles: parsed
+                .obstacle
+                .into_iter()
+                .enumerate()
+                .map(|(i, obstacle)| Obstacle {
+                    name: obstacle.name.unwrap_or_else(|| obstacle_name(i)),
+                    position: obstacle.position.0.into(),
+                    radius: obstacle.radius,
+                })
+                .collect(),
+            max_ticks: parsed.max_ticks,
+            seed: parsed.seed,
+            allow_close_start: parsed.allow_close_start,
+            params: parsed.params,
+        };
+        scenario.validate()?;
+        Ok(scenario)
+    }
+
+    /// This scenario as a file that [`Scenario::from_toml`] reads back to the same bits, name included.
+    pub fn to_toml(&self) -> Result<String, ScenarioError> {
+        let point = |p: Position| Point([p.x, p.y]);
+        let given = |name: &String, default: String| (*name != default).then(|| name.clone());
+        let file = File {
+            version: 1,
+            name: Some(self.name.clone()),
+            max_ticks: self.max_ticks,
+            seed: self.seed,
+            allow_close_start: self.allow_close_start,
+            robot: self
+                .robots
+                .iter()
+                .enumerate()
+                .map(|(i, robot)| FileRobot {
+                    name: given(&robot.name, robot_name(i)),
+                    start: point(robot.start),
+                    set_point: point(robot.set_point),
+                    radius: robot.radius,
+                })
+                .collect(),
+            obstacle: self
+                .obstacles
+                .iter()
+                .enumerate()
+                .map(|(i, obstacle)| FileObstacle {
+                    name: given(&obstacle.name, obstacle_name(i)),
+                    position: point(obstacle.position),
+                    radius: obstacle.radius,
+                })
+                .collect(),
+            params: self.params.clone(),
+        };
+        toml::to_string(&file)
+            .map_err(|error| ScenarioError::Unwritable { scenario: self.name.clone(), message: error.to_string() })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    const GOOD: &str = "version = 1\n[[robot]]\nstart = [0, 0.5]\nset_point = [5.0, 0.0]\n";
+
+    fn message(text: &str) -> String {
+        Scenario::from_toml(text, "mine", "mine.toml").unwrap_err().to_string()
+    }
+
+    #[test]
+    fn what_is_left_out_has_its_default() {
+        let scenario = Scenario::from_toml(GOOD, "mine", "mine.toml").unwrap();
+        assert_eq!((scenario.name.as_str(), scenario.max_ticks, scenario.seed), ("mine", 350, 0));
+        assert_eq!(scenario.robots[0].name, "robot-0");
+        assert_eq!(scenario.robots[0].start, Position::new(0.0, 0.5));
+        assert!(!scenario.allow_close_start && scenario.obstacles.is_empty() && scenario.params.is_empty());
+    }
+
+    #[test]
+    fn mistakes_show_the_file_the_line_and_what_is_accepted() {
+        let unknown = message(&GOOD.replace("set_point", "goal"));
+        for part in ["mine.toml:", "line 4", "unknown field `goal`", "`set_point`", "^"] {
+            assert!(unknown.contains(part), "{part} is not in:\n{unknown}");
+        }
+        assert!(message(&GOOD.replace("0.5", "abc")).contains("line 3"));
+        let three = message(&GOOD.replace("[0, 0.5]", "[0, 0.5, 1]"));
+        assert!(three.contains("line 3") && three.contains("expected [x, y] in metres, found 3 numbers"), "{three}");
+        assert!(message(&GOOD.replace("version = 1", "")).contains("missing field `version`"));
+    }
+
+    #[test]
+    fn another_version_is_refused_before_anything_else() {
+        let text = GOOD.replace("version = 1", "version = 2\nnew = true");
+        assert_eq!(
+            message(&text),
+            "mine.toml: version = 2 is not known; this program reads version = 1 (scenarios/README.md)"
+        );
+    }
+
+    #[test]
+    fn names_radii_and_parameters_survive_the_copy() {
+        let text = format!(
+            "{GOOD}name = \"left\"\nradius = 0.5\n[[obstacle]]\nname = \"pillar\"\nposition = [9, 9]\nradius = 2\n\
+             [params]\nvodca.turn = 0.1\n"
+        );
+        let scenario = Scenario::from_toml(&text, "mine", "mine.toml").unwrap();
+        let copy = Scenario::from_toml(&scenario.to_toml().unwrap(), "other", "copy.toml").unwrap();
+        assert_eq!(copy, scenario);
+        assert_eq!((copy.name.as_str(), copy.robots[0].name.as_str()), ("mine", "left"));
+        assert_eq!(copy.params["vodca"]["turn"].as_float(), Some(0.1));
+    }
+
+    #[test]
+    fn a_missing_file_is_named() {
+        let message = Scenario::load(Path::new("no/such/file.toml")).unwrap_err().to_string();
+        assert!(message.contains("no/such/file.toml"), "{message}");
+    }
+
+    proptest! {
+        #[test]
+        fn the_copy_reads_back_to_the_same_bits(
+            points in prop::collection::vec(prop::array::uniform4(-1e6f64..1e6), 1..8),
+            radius in prop::option::of(1e-12f64..1e6),
+            seed in 0u64..=i64::MAX as u64,
+        ) {
+            let robots = points.iter().enumerate().map(|(i, p)| Robot {
+                name: robot_name(i),
+                start: Position::new(p[0], p[1]),
+                set_point: Position::new(p[2] * 1e-9, -p[3]),
+                radius,
+            });
+            let scenario = Scenario {
+                name: "ring:\"7\"".into(),
+                robots: robots.collect(),
+                obstacles: vec![],
+                max_ticks: 7,
+                seed,
+                allow_close_start: true,
+                params: toml::Table::new(),
+            };
+            let copy = Scenario::from_toml(&scenario.to_toml().unwrap(), "x", "x").unwrap();
+            prop_assert_eq!(copy, scenario);
+        }
+    }
+}

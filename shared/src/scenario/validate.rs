@@ -1,0 +1,208 @@
+//! What a layout must satisfy before it is run.
+
+use super::{MAX_COORDINATE, MAX_ROBOTS, Problem, Scenario, ScenarioError};
+use crate::Position;
+
+/// Rounding allowance on distances, m: layouts that touch on purpose are accepted.
+const TOLERANCE: f64 = 1e-9;
+
+/// Nearer than this, two centres have no direction between them.
+const COINCIDENT: f64 = 1e-9;
+
+/// Longest run; keeps records within what a disk holds.
+const MAX_TICKS: u64 = 1_000_000;
+
+impl Scenario {
+    /// Checks everything that does not depend on parameters: counts, numbers, radii, names.
+    /// [`Scenario::resolve`] and [`Scenario::from_toml`] have done it.
+    pub fn validate(&self) -> Result<(), ScenarioError> {
+        self.find_problem().map_err(|problem| self.invalid(problem))
+    }
+
+    /// Checks all distances at the start and at the set-points for discs of radius
+    /// `min_separation / 2` (or their own): robots and obstacles must not overlap.
+    pub fn validate_distances(&self, min_separation: f64) -> Result<(), ScenarioError> {
+        self.find_overlap(min_separation).map_err(|problem| self.invalid(problem))
+    }
+
+    pub(super) fn invalid(&self, problem: Problem) -> ScenarioError {
+        ScenarioError::Invalid { scenario: self.name.clone(), problem }
+    }
+
+    fn find_problem(&self) -> Result<(), Problem> {
+        match self.robots.len() {
+            0 => return Err(Problem::NoRobots),
+            1..=MAX_ROBOTS => {}
+            many => return Err(Problem::TooManyRobots(many)),
+        }
+        integer("max_ticks", self.max_ticks, 1, MAX_TICKS)?;
+        // TOML integers have a sign.
+        integer("seed", self.seed, 0, i64::MAX as u64)?;
+        for robot in &self.robots {
+            coordinate(&robot.name, "start", robot.start)?;
+            coordinate(&robot.name, "set_point", robot.set_point)?;
+            check_radius(&robot.name, robot.radius)?;
+        }
+        for obstacle in &self.obstacles {
+            coordinate(&obstacle.name, "position", obstacle.position)?;
+            check_radius(&obstacle.name, obstacle.radius)?;
+        }
+        let mut names: Vec<&str> = self.robots.iter().map(|robot| robot.name.as_str()).collect();
+        names.extend(self.obstacles.iter().map(|obstacle| obstacle.name.as_str()));
+        names.sort_unstable();
+        match names.windows(2).find(|pair| pair[0] == pair[1]) {
+            Some(pair) => Err(Problem::DuplicateName(pair[0].into())),
+            None => Ok(()),
+        }
+    }
+
+    fn find_overlap(&self, min_separation: f64) -> Result<(), Problem> {
+        let radius = |given: Option<f64>| given.unwrap_or(min_separation / 2.0);
+        for (i, a) in self.robots.iter().enumerate() {
+            for b in &self.robots[i + 1..] {
+                let needed = radius(a.radius) + radius(b.radius);
+                self.check_start(&a.name, a.start, &b.name, b.start, needed)?;
+                let distance = (a.set_point - b.set_point).norm();
+                if distance < needed - TOLERANCE {
+                    let b = format!("that of {}", b.name);
+                    return Err(Problem::CloseSetPoint { a: a.name.clone(), b, distance, needed });
+                }
+            }
+            for obstacle in &self.obstacles {
+                let needed = radius(a.radius) + radius(obstacle.radius);
+                self.check_start(&a.name, a.start, &obstacle.name, obstacle.position, needed)?;
+                let distance = (a.set_point - obstacle.position).norm();
+                if distance < needed - TOLERANCE {
+                    let b = obstacle.name.clone();
+                    return Err(Problem::CloseSetPoint { a: a.name.clone(), b, distance, needed });
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn check_start(&self, a: &str, start: Position, b: &str, other: Position, needed: f64) -> Result<(), Problem> {
+        let distance = (start - other).norm();
+        if distance < COINCIDENT {
+            return Err(Problem::Coincident { a: a.into(), b: b.into(), x: start.x, y: start.y });
+        }
+        if !self.allow_close_start && distance < needed - TOLERANCE {
+            return Err(Problem::CloseStart { a: a.into(), b: b.into(), distance, needed });
+        }
+        Ok(())
+    }
+}
+
+fn integer(key: &'static str, value: u64, low: u64, high: u64) -> Result<(), Problem> {
+    if (low..=high).contains(&value) { Ok(()) } else { Err(Problem::Integer { key, value, low, high }) }
+}
+
+fn coordinate(who: &str, what: &'static str, point: Position) -> Result<(), Problem> {
+    if point.iter().all(|x| x.abs() <= MAX_COORDINATE) {
+        Ok(())
+    } else {
+        Err(Problem::Coordinate { who: who.into(), what, x: point.x, y: point.y })
+    }
+}
+
+fn check_radius(who: &str, radius: Option<f64>) -> Result<(), Problem> {
+    match radius {
+        Some(radius) if !(radius > 0.0 && radius <= MAX_COORDINATE) => Err(Problem::Radius { who: who.into(), radius }),
+        _ => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scenario::Obstacle;
+
+    fn good() -> Scenario {
+        let mut scenario = Scenario::resolve(Some("four_gate"), None).unwrap();
+        scenario.name = "mine".into();
+        scenario
+    }
+
+    /// The message after `change`, or "" when the scenario is still valid.
+    fn after(change: impl FnOnce(&mut Scenario)) -> String {
+        let mut scenario = good();
+        change(&mut scenario);
+        match scenario.validate().and_then(|()| scenario.validate_distances(1.5)) {
+            Ok(()) => String::new(),
+            Err(error) => error.to_string(),
+        }
+    }
+
+    fn assert_names(message: &str, parts: &[&str]) {
+        for part in parts {
+            assert!(message.contains(part), "`{part}` is not in: {message}");
+        }
+    }
+
+    #[test]
+    fn numbers_that_are_none_are_refused() {
+        assert_names(&after(|s| s.robots[1].start.x = f64::NAN), &["mine", "start of robot-1", "NaN", "finite"]);
+        assert_names(&after(|s| s.robots[2].set_point.y = f64::INFINITY), &["set_point of robot-2", "inf"]);
+        assert_names(&after(|s| s.obstacles[1].position.y = 2e6), &["position of obstacle-1", "2000000"]);
+        for radius in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+            assert_names(&after(|s| s.robots[0].radius = Some(radius)), &["radius of robot-0", "above 0"]);
+            assert_names(&after(|s| s.obstacles[0].radius = Some(radius)), &["radius of obstacle-0", "above 0"]);
+        }
+    }
+
+    #[test]
+    fn counts_outside_their_limits_are_refused() {
+        assert_names(&after(|s| s.robots.clear()), &["no robots", "[[robot]]"]);
+        let many = after(|s| {
+            let robot = s.robots[0].clone();
+            s.robots = vec![robot; 201];
+        });
+        assert_names(&many, &["201 robots are too many", "at most 200"]);
+        assert_names(&after(|s| s.max_ticks = 0), &["max_ticks = 0", "1..=1000000"]);
+        assert_names(&after(|s| s.seed = u64::MAX), &["seed = 18446744073709551615"]);
+        assert_names(&after(|s| s.robots[1].name = "obstacle-0".into()), &["two entries are called `obstacle-0`"]);
+    }
+
+    #[test]
+    fn starts_that_overlap_are_refused_unless_it_is_meant() {
+        let close = |s: &mut Scenario| s.robots[1].start = s.robots[0].start + Position::new(1.4, 0.0);
+        let message = after(close);
+        assert_names(&message, &["robot-0 starts 1.4000 m from robot-1", "1.5000 m", "allow_close_start = true"]);
+        let meant = after(|s| {
+            close(s);
+            s.allow_close_start = true;
+        });
+        assert_eq!(meant, "");
+        let obstacle = after(|s| s.robots[2].start = s.obstacles[0].position + Position::new(0.0, 1.0));
+        assert_names(&obstacle, &["robot-2 starts 1.0000 m from obstacle-0"]);
+    }
+
+    #[test]
+    fn coincident_starts_are_refused_always() {
+        let message = after(|s| {
+            s.robots[1].start = s.robots[0].start;
+            s.allow_close_start = true;
+        });
+        assert_names(&message, &["robot-0 and robot-1 are at the same place [2.5, 11] m"]);
+    }
+
+    #[test]
+    fn set_points_that_cannot_be_filled_are_refused() {
+        let robots = after(|s| s.robots[3].set_point = s.robots[2].set_point + Position::new(0.0, 1.49));
+        assert_names(&robots, &["the set-point of robot-2 is 1.4900 m from that of robot-3", "can never"]);
+        let obstacle = after(|s| {
+            let position = s.robots[0].set_point + Position::new(-1.0, 0.0);
+            s.obstacles.push(Obstacle { name: "late".into(), position, radius: None });
+        });
+        assert_names(&obstacle, &["the set-point of robot-0 is 1.0000 m from late"]);
+    }
+
+    #[test]
+    fn discs_may_touch_and_own_radii_count() {
+        assert_eq!(after(|s| s.robots[1].start = s.robots[0].start + Position::new(1.5, 0.0)), "");
+        let message = after(|s| s.robots[0].radius = Some(2.5));
+        assert_names(&message, &["robot-0 starts 3.0000 m from robot-1", "3.2500 m"]);
+        assert_eq!(good().validate_distances(3.0).map_err(|e| e.to_string()), Ok(()));
+        assert!(good().validate_distances(3.1).is_err());
+    }
+}
