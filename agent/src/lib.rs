@@ -1,4 +1,10 @@
 //! One robot of the team: predicts, detects conflicts, solves its own MPC, publishes its plan.
 pub mod controller;
+pub mod golden;
+pub mod layout;
 pub mod mpc;
+pub mod reference;
+pub mod safety;
+pub mod team;
 pub mod vodca;
+pub mod vodca_controller;

@@ -52,17 +52,6 @@ impl Prediction {
     pub fn states(&self) -> &[Position] {
         &self.states[..=self.horizon.steps()]
     }
-
-    /// The plan one tick later without news: every state moves one step forward, the robot is
-    /// assumed to stay where the plan ends. Used when a neighbour's message is missing.
-    pub fn shifted(&self) -> Self {
-        let mut next = self.clone();
-        next.states.copy_within(1.., 0);
-        for l in self.horizon.steps()..=MAX_HORIZON {
-            next.states[l] = self.states[self.horizon.steps()];
-        }
-        next
-    }
 }
 
 #[cfg(test)]
@@ -75,12 +64,5 @@ mod tests {
         let plan = Prediction::roll_out(Position::new(1.0, 1.0), Position::zeros(), 0.2, &inputs);
         assert_eq!(plan.horizon().steps(), 2);
         assert_eq!(plan.states(), [Position::new(1.0, 1.0), Position::new(1.2, 1.0), Position::new(1.2, 0.7)]);
-    }
-
-    #[test]
-    fn a_shifted_plan_ends_where_it_ended() {
-        let states = [Position::new(0.0, 0.0), Position::new(1.0, 0.0), Position::new(2.0, 0.0)];
-        let shifted = Prediction::from_states(&states, Position::zeros()).shifted();
-        assert_eq!(shifted.states(), [states[1], states[2], states[2]]);
     }
 }

@@ -9,8 +9,14 @@ pub const NO_DIRECTION: f64 = 1e-9;
 /// What a hazard is expected to do.
 #[derive(Clone, Copy, Debug)]
 pub enum Course<'a> {
-    /// A neighbour follows its plan x^_j[l|k-1] as far as it reaches.
-    Plan(&'a Prediction),
+    /// A neighbour follows its plan x^_j[l|k-1] as far as it reaches. A plan that is `age` ticks older
+    /// than k - 1 is shifted: the neighbour is expected to stay where it ends.
+    Plan {
+        /// The newest plan heard.
+        plan: &'a Prediction,
+        /// Ticks by which it is late; 0 in an undisturbed run.
+        age: usize,
+    },
     /// It walks straight from a place to another with `stride` metres per step on its largest axis
     /// (a neighbour's wish, safe.md rule 3).
     Wish {
@@ -38,7 +44,10 @@ impl Hazard<'_> {
     /// Where the hazard is at prediction step `step` of the plans of tick k - 1; `None` beyond its plan.
     pub fn at(&self, step: usize) -> Option<Position> {
         match self.course {
-            Course::Plan(plan) => (step <= plan.horizon().steps()).then(|| plan.state(step)),
+            Course::Plan { plan, age } => {
+                let last = plan.horizon().steps();
+                (step <= last).then(|| plan.state(step.saturating_add(age).min(last)))
+            }
             Course::Wish { from, to, stride } => Some(toward(from, to, stride * step as f64)),
             Course::Still(position) => Some(position),
         }
@@ -97,14 +106,26 @@ mod tests {
     #[test]
     fn only_steps_that_both_predict_are_compared() {
         let (own, other) = (line(0.0, 0.3, 20), line(6.0, -0.3, 20));
-        let hazard = Hazard { course: Course::Plan(&other), separation: 1.5 };
+        let hazard = Hazard { course: Course::Plan { plan: &other, age: 0 }, separation: 1.5 };
         let conflict = first_conflict(&own, &hazard, 1, 49).unwrap();
         assert_eq!(conflict.step, 8);
         assert!((conflict.distance - 1.2).abs() < 1e-12);
         let short = line(6.0, -0.3, 7);
-        assert_eq!(first_conflict(&own, &Hazard { course: Course::Plan(&short), separation: 1.5 }, 1, 49), None);
+        assert_eq!(
+            first_conflict(&own, &Hazard { course: Course::Plan { plan: &short, age: 0 }, separation: 1.5 }, 1, 49),
+            None
+        );
         assert_eq!(first_conflict(&line(0.0, 0.3, 7), &hazard, 1, 49), None);
         assert_eq!(first_conflict(&own, &hazard, 1, 7), None);
+    }
+
+    #[test]
+    fn a_late_plan_is_shifted_and_ends_where_it_ended() {
+        let plan = line(0.0, 1.0, 3);
+        let late = |step| Hazard { course: Course::Plan { plan: &plan, age: 2 }, separation: 1.0 }.at(step);
+        assert_eq!(late(1), Some(Position::new(3.0, 0.0)));
+        assert_eq!(late(3), Some(Position::new(3.0, 0.0)));
+        assert_eq!(late(4), None);
     }
 
     #[test]

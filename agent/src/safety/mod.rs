@@ -1,0 +1,7 @@
+//! The separation that holds by construction (safe.md, rules 5 and 6): cells that robots may not leave
+//! within a tick, and the last check after any solver outcome.
+
+pub mod cell;
+pub mod last_check;
+
+pub use cell::Cell;

@@ -1,0 +1,238 @@
+//! Variable-horizon MPC with VODCA: one robot, one tick. Profiles are switches of this one controller.
+
+use crate::controller::{Controller, Decision, Neighbour, View};
+use crate::layout::Layout;
+use crate::mpc::ladder::Ladder;
+use crate::mpc::problem::{Plan, Problem, Row, SlackPrice, SolveError, Target};
+use crate::reference;
+use crate::safety::cell::{Cell, Present};
+use crate::safety::last_check::nearest_safe;
+use crate::vodca::rows::collision_rows;
+use crate::vodca::{Course, Hazard};
+use shared::horizon::Horizon;
+use shared::params::{Infeasible, Params, Reference};
+use shared::prediction::Prediction;
+use shared::step::{Level, Status};
+use shared::{Input, Position};
+
+/// The controller of one robot.
+pub struct VodcaController {
+    robot: usize,
+    params: Params,
+    layout: Layout,
+    ladder: Ladder,
+    target: Target,
+    rows: Vec<Row>,
+    cell: Cell,
+    plan: Plan,
+    previous: Option<Previous>,
+    in_conflict: f64,
+}
+
+/// The robot's own plan of tick k - 1.
+struct Previous {
+    prediction: Prediction,
+    plan: Plan,
+}
+
+impl VodcaController {
+    /// The controller of `robot`; everything a tick needs is allocated here.
+    pub fn new(robot: usize, params: &Params, layout: &Layout) -> Self {
+        let hazards = layout.set_points.len() + layout.obstacles.len();
+        Self {
+            robot,
+            params: params.clone(),
+            layout: layout.clone(),
+            ladder: Ladder::default(),
+            target: reference::empty_target(),
+            rows: Vec::with_capacity(2 * hazards),
+            cell: Cell::with_capacity(hazards, params.model.sample_time * params.model.max_speed),
+            plan: Plan::default(),
+            previous: None,
+            in_conflict: 0.0,
+        }
+    }
+
+    /// Rules 2 and 3: collision rows from the plans of tick k - 1. None at the first tick.
+    fn detect(&mut self, view: &View<'_>) -> usize {
+        self.rows.clear();
+        let Some(previous) = &self.previous else { return 0 };
+        let hazards = hazards(&self.params, &self.layout, self.robot, view);
+        let min_separation = self.params.model.min_separation;
+        let vodca = &self.params.vodca;
+        collision_rows(vodca, min_separation, &previous.prediction, view.horizon, hazards, &mut self.rows)
+    }
+
+    /// Rule 4 (memory) and rule 1 (reference).
+    fn aim(&mut self, view: &View<'_>, rows: usize) {
+        let flag = if rows > 0 { 1.0 } else { 0.0 };
+        self.in_conflict += self.params.aim.memory * (flag - self.in_conflict);
+        let set_point = self.layout.set_points[self.robot];
+        match self.params.mpc.reference {
+            Reference::SetPoint => reference::set_point(&mut self.target, set_point, view.horizon),
+            Reference::Straight => {
+                let seen = reference::aim(&self.params.aim, self.in_conflict, view.position, set_point);
+                let model = &self.params.model;
+                let (h, speed) = (model.sample_time, model.max_speed);
+                reference::straight(&mut self.target, view.position, seen, view.horizon, h, speed);
+            }
+        }
+    }
+
+    /// Rule 5: the cell of this tick from the broadcast positions.
+    fn bound_cell(&mut self, view: &View<'_>) {
+        self.cell.clear();
+        if !self.params.cell.enabled {
+            return;
+        }
+        let own = self.previous.as_ref().map_or(view.position, |previous| previous.prediction.state(1));
+        let Self { robot, layout, cell, params, .. } = self;
+        let owed = |extra: f64| params.cell.separation + layout.robot_extra[*robot] + extra;
+        for (other, neighbour) in view.neighbours.iter().enumerate().filter(|(other, _)| other != robot) {
+            let separation = owed(layout.robot_extra[other]);
+            match neighbour.present {
+                Some((tick, position)) if tick == view.tick => {
+                    let present = Present { position, separation, moves: true };
+                    cell.keep_away(own, &present, params.cell.escape, *robot < other);
+                }
+                Some((tick, last)) => cell.stay_near(own, last, separation, view.tick.saturating_sub(tick)),
+                None => cell.reach = 0.0,
+            }
+        }
+        for obstacle in &layout.obstacles {
+            let present = Present { position: obstacle.centre, separation: owed(obstacle.extra), moves: false };
+            cell.keep_away(own, &present, params.cell.escape, true);
+        }
+        self.rows.extend(self.cell.as_rows(view.position));
+    }
+
+    /// The ladder, then what the method does when the hard rows admit nothing or nobody finishes.
+    fn solve(&mut self, view: &View<'_>, collision_rows: usize) -> (Level, Status) {
+        match self.run_ladder(view) {
+            Ok(level) => return (level, Status::Solved),
+            Err(SolveError::Infeasible) if self.params.vodca.infeasible == Infeasible::Hold => {
+                self.plan = Plan::default();
+                return (Level::Fallback, Status::Held);
+            }
+            Err(SolveError::Infeasible) => {
+                self.rows[..collision_rows].iter_mut().for_each(|row| row.hard = false);
+                if let Ok(level) = self.run_ladder(view) {
+                    return (level, Status::Relaxed);
+                }
+            }
+            Err(SolveError::GaveUp { .. }) => {}
+        }
+        (Level::Fallback, self.fall_back(view.horizon))
+    }
+
+    fn run_ladder(&mut self, view: &View<'_>) -> Result<Level, SolveError> {
+        let Params { model, mpc, vodca, .. } = &self.params;
+        let problem = Problem {
+            horizon: view.horizon,
+            position: view.position,
+            target: &self.target,
+            rows: &self.rows,
+            slack: SlackPrice { linear: vodca.slack_linear, quadratic: vodca.slack_quadratic },
+            sample_time: model.sample_time,
+            max_speed: model.max_speed,
+            state_weight: mpc.state_weight,
+            input_weight: mpc.input_weight,
+        };
+        self.ladder.solve(&problem, &mut self.plan)
+    }
+
+    /// No solver finished: the previous plan one step later, or standing still.
+    fn fall_back(&mut self, horizon: Horizon) -> Status {
+        self.plan = Plan::default();
+        let Some(previous) = &self.previous else { return Status::Stopped };
+        let still_planned = previous.plan.inputs.iter().skip(1).take(horizon.steps());
+        for (to, from) in self.plan.inputs.iter_mut().zip(still_planned) {
+            *to = *from;
+        }
+        Status::Shifted
+    }
+
+    /// Rule 6, then the plan that everybody sees: bounded inputs rolled out by the model, never the
+    /// solver's own states, so that state(1) is where the robot will be.
+    fn publish(&mut self, view: &View<'_>) -> (Prediction, bool) {
+        let Params { model, .. } = &self.params;
+        let inputs = &mut self.plan.inputs[..view.horizon.steps()];
+        for input in inputs.iter_mut() {
+            *input = input.map(|axis| bounded(axis, model.max_speed));
+        }
+        let mut shielded = false;
+        if self.params.cell.enabled {
+            let (step, changed) = nearest_safe(inputs[0] * model.sample_time, &self.cell);
+            if changed {
+                inputs[0] = (step / model.sample_time).map(|axis| bounded(axis, model.max_speed));
+                shielded = true;
+            }
+        }
+        let set_point = self.layout.set_points[self.robot];
+        (Prediction::roll_out(view.position, set_point, model.sample_time, inputs), shielded)
+    }
+}
+
+/// `axis` within +-`bound`, m/s; what is not a number becomes standing still.
+fn bounded(axis: f64, bound: f64) -> f64 {
+    if axis.is_nan() { 0.0 } else { axis.clamp(-bound, bound) }
+}
+
+impl Controller for VodcaController {
+    fn tick(&mut self, view: &View<'_>) -> Decision {
+        let rows = self.detect(view);
+        self.aim(view, rows);
+        self.bound_cell(view);
+        let (level, status) = self.solve(view, rows);
+        let (prediction, shielded) = self.publish(view);
+        let input: Input = self.plan.inputs[0];
+        self.previous = Some(Previous { prediction: prediction.clone(), plan: self.plan.clone() });
+        Decision { input, plan: prediction, rows: rows as u32, level, status, shielded }
+    }
+}
+
+/// Every neighbour that was heard of, then every obstacle.
+fn hazards<'a>(
+    params: &'a Params,
+    layout: &'a Layout,
+    robot: usize,
+    view: &'a View<'a>,
+) -> impl Iterator<Item = Hazard<'a>> + Clone {
+    let owed = move |extra: f64| params.model.min_separation + layout.robot_extra[robot] + extra;
+    let others = view.neighbours.iter().enumerate().filter(move |(other, _)| *other != robot);
+    let neighbours = others.filter_map(move |(other, neighbour)| {
+        let separation = owed(layout.robot_extra[other]);
+        if let Some(wish) = wish_to_let_pass(params, layout.set_points[robot], view.position, neighbour) {
+            return Some(Hazard { course: wish, separation: separation + params.give_way.clearance });
+        }
+        let (tick, plan) = neighbour.plan.as_ref()?;
+        let age = (view.tick - 1).saturating_sub(*tick) as usize;
+        Some(Hazard { course: Course::Plan { plan, age }, separation })
+    });
+    let obstacles = layout
+        .obstacles
+        .iter()
+        .map(move |obstacle| Hazard { course: Course::Still(obstacle.centre), separation: owed(obstacle.extra) });
+    neighbours.chain(obstacles)
+}
+
+/// Rule 3: a robot near its set-point lets those pass that still have farther to go, by keeping away
+/// from where they wish to walk. (A plan that already avoids a parked robot shows no conflict.)
+fn wish_to_let_pass<'a>(
+    params: &Params,
+    own_set_point: Position,
+    own: Position,
+    neighbour: &Neighbour,
+) -> Option<Course<'a>> {
+    let own_way = (own_set_point - own).norm();
+    if own_way >= params.give_way.radius {
+        return None;
+    }
+    let (_, present) = neighbour.present?;
+    let stride = params.model.sample_time * params.model.max_speed;
+    ((neighbour.set_point - present).norm() > own_way).then_some(Course::Wish {
+        from: present,
+        to: neighbour.set_point,
+        stride,
+    })
+}
