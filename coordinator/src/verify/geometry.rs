@@ -1,0 +1,115 @@
+//! Separations and paths, recomputed.
+
+use super::table::Table;
+use shared::params::Params;
+use shared::scenario::Scenario;
+
+/// What a trajectory shows.
+#[derive(Clone, Debug)]
+pub(super) struct Course {
+    /// Smallest separation of the run, m, radii beyond min_separation / 2 taken off; infinite alone.
+    pub(super) min_separation: f64,
+    /// Where it was: tick, robot, and the name of what was near.
+    pub(super) nearest: (usize, usize, String),
+    /// Ticks in which someone was nearer than min_separation (by more than rounding).
+    pub(super) ticks_below: u64,
+    /// Ticks in which someone collided.
+    pub(super) collisions: u64,
+    /// Length of each robot's path, m.
+    pub(super) path: Vec<f64>,
+    /// What is left to each set-point, m.
+    pub(super) distances: Vec<f64>,
+}
+
+impl Course {
+    /// Follows everybody through the run.
+    pub(super) fn follow(table: &Table, scenario: &Scenario, params: &Params) -> Self {
+        let robots = scenario.robots.len();
+        let limit = params.model.min_separation;
+        let half = limit / 2.0;
+        let extra = |radius: Option<f64>| radius.map_or(0.0, |radius| radius - half);
+        let mut course = Self {
+            min_separation: f64::INFINITY,
+            nearest: (0, 0, String::new()),
+            ticks_below: 0,
+            collisions: 0,
+            path: vec![0.0; robots],
+            distances: Vec::new(),
+        };
+        for tick in 0..table.ticks.len() {
+            let mut least = f64::INFINITY;
+            let mut note = |near: f64, robot: usize, other: &dyn Fn() -> String| {
+                least = least.min(near);
+                if near < course.min_separation {
+                    course.min_separation = near;
+                    course.nearest = (tick, robot, other());
+                }
+            };
+            for i in 0..robots {
+                let (from, to) = (table.position(tick, i), table.position(tick + 1, i));
+                course.path[i] += (to[0] - from[0]).hypot(to[1] - from[1]);
+                let own = extra(scenario.robots[i].radius);
+                for j in i + 1..robots {
+                    let (other_from, other_to) = (table.position(tick, j), table.position(tick + 1, j));
+                    let near = nearest(minus(from, other_from), minus(to, other_to));
+                    note(near - own - extra(scenario.robots[j].radius), i, &|| format!("robot {j}"));
+                }
+                for (l, obstacle) in scenario.obstacles.iter().enumerate() {
+                    let centre = [obstacle.position.x, obstacle.position.y];
+                    let near = nearest(minus(from, centre), minus(to, centre));
+                    note(near - own - extra(obstacle.radius), i, &|| format!("obstacle {l}"));
+                }
+            }
+            course.ticks_below += u64::from(least < limit - super::TOUCH);
+            course.collisions += u64::from(least < params.episode.collision_factor * limit);
+        }
+        course.distances = (0..robots)
+            .map(|i| {
+                let [x, y] = table.position(table.ticks.len(), i);
+                (x - scenario.robots[i].set_point.x).hypot(y - scenario.robots[i].set_point.y)
+            })
+            .collect();
+        course
+    }
+}
+
+fn minus(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+    [a[0] - b[0], a[1] - b[1]]
+}
+
+/// Smallest distance from the origin to the segment from `a` to `b`: the height of the triangle over the
+/// segment when its foot lies inside (both angles at the segment acute), the shorter side otherwise.
+pub(super) fn nearest(a: [f64; 2], b: [f64; 2]) -> f64 {
+    let along = minus(b, a);
+    let at_a = a[0] * along[0] + a[1] * along[1];
+    let at_b = b[0] * along[0] + b[1] * along[1];
+    if at_a < 0.0 && at_b > 0.0 {
+        (a[0] * b[1] - a[1] * b[0]).abs() / along[0].hypot(along[1])
+    } else {
+        a[0].hypot(a[1]).min(b[0].hypot(b[1]))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn heights_and_sides_are_told_apart() {
+        assert_eq!(nearest([-1.0, 1.0], [1.0, 1.0]), 1.0);
+        assert_eq!(nearest([3.0, 4.0], [6.0, 8.0]), 5.0);
+        assert_eq!(nearest([3.0, 4.0], [3.0, 4.0]), 5.0);
+        assert_eq!(nearest([-1.0, 0.0], [1.0, 0.0]), 0.0);
+    }
+
+    proptest! {
+        #[test]
+        fn both_formulas_agree(c in prop::array::uniform4(-5.0f64..5.0)) {
+            use shared::Position;
+            let still = (Position::zeros(), Position::zeros());
+            let other = shared::separation::separation((Position::new(c[0], c[1]), Position::new(c[2], c[3])), still);
+            prop_assert!((nearest([c[0], c[1]], [c[2], c[3]]) - other).abs() < 1e-9);
+        }
+    }
+}
