@@ -1,0 +1,27 @@
+//! A whole run in this process: what sweeps, comparisons and replays stand on.
+
+use agent::team::Team;
+use shared::horizon::Horizon;
+use shared::metrics::RunMetrics;
+use shared::params::Params;
+use shared::scenario::Scenario;
+use shared::step::Step;
+
+/// Runs the team until everybody has arrived or `scenario.max_ticks` have passed; `horizon(robot, tick)` is
+/// N_i^k after any jitter. `on_tick` sees every tick and ends the run by an error.
+pub fn run_team<E>(
+    scenario: &Scenario,
+    params: &Params,
+    horizon: impl Fn(usize, u64) -> Horizon,
+    mut on_tick: impl FnMut(u64, &[Step]) -> Result<(), E>,
+) -> Result<RunMetrics, E> {
+    let mut metrics = RunMetrics::new(scenario, params);
+    let mut team = Team::new(scenario, params);
+    while !metrics.arrived_all() && team.tick() < scenario.max_ticks {
+        let tick = team.tick();
+        let steps = team.step(|robot| horizon(robot, tick));
+        metrics.observe(tick, steps);
+        on_tick(tick, steps)?;
+    }
+    Ok(metrics)
+}

@@ -1,0 +1,97 @@
+//! `summary.json`: how a run went. Versioned; fields are only added within a version.
+
+use crate::guarantee;
+use crate::latency::{Latency, Percentiles};
+use serde::{Deserialize, Serialize};
+use shared::metrics::RunSummary;
+use shared::params::Params;
+use shared::scenario::Scenario;
+use shared::step::Step;
+use std::time::Duration;
+
+/// Version of the format.
+pub const VERSION: u32 = 1;
+
+/// How a run ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum End {
+    /// Everybody arrived.
+    Arrived,
+    /// The last tick passed before everybody had arrived.
+    OutOfTicks,
+    /// It was asked to stop.
+    Interrupted,
+    /// A robot's process was lost.
+    PeerLost,
+}
+
+/// The content of `summary.json`: the figures of [`RunSummary`] and these.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Summary {
+    /// [`VERSION`].
+    pub version: u32,
+    /// Name of the scenario.
+    pub scenario: String,
+    /// Name of the profile.
+    pub profile: String,
+    /// The horizon's source as given.
+    pub horizon: String,
+    /// How it ended.
+    pub end: End,
+    /// Which guarantee held, and why not where it did not.
+    pub guarantee: String,
+    /// The figures that depend on the trajectory alone.
+    #[serde(flatten)]
+    pub run: RunSummary,
+    /// Duration of a tick as the coordinator sees it.
+    pub tick_latency: Percentiles,
+    /// From having all messages to having a plan, by robot.
+    pub solve_latency: Vec<Percentiles>,
+}
+
+impl Summary {
+    /// Puts the parts together.
+    pub fn new(
+        scenario: &Scenario,
+        params: &Params,
+        (profile, horizon): (&str, &str),
+        end: End,
+        run: RunSummary,
+        timings: &Timings,
+    ) -> Self {
+        Self {
+            version: VERSION,
+            scenario: scenario.name.clone(),
+            profile: profile.into(),
+            horizon: horizon.into(),
+            end,
+            guarantee: guarantee::statement(scenario, params, &run),
+            run,
+            tick_latency: timings.tick.percentiles(),
+            solve_latency: timings.solve.iter().map(Latency::percentiles).collect(),
+        }
+    }
+}
+
+/// Collects durations during a run; they go into the summary only, never into what is compared.
+#[derive(Clone, Debug)]
+pub struct Timings {
+    tick: Latency,
+    solve: Vec<Latency>,
+}
+
+impl Timings {
+    /// For a team of `robots`.
+    pub fn new(robots: usize) -> Self {
+        Self { tick: Latency::new(), solve: vec![Latency::new(); robots] }
+    }
+
+    /// Takes in a tick that took `duration`.
+    pub fn observe(&mut self, duration: Duration, steps: &[Step]) {
+        self.tick.record(duration);
+        for (latency, step) in self.solve.iter_mut().zip(steps) {
+            latency.record_ns(step.solve_ns);
+        }
+    }
+}
