@@ -132,7 +132,7 @@ impl RunMetrics {
         let mut least = f64::INFINITY;
         let hazards = self.robots.len() + self.obstacles.len();
         let (limit, collision) = (self.limit, self.collision_distance);
-        let broken = |found: f64| BELOW * u8::from(found < limit) | COLLIDED * u8::from(found < collision);
+        let broken = |found: f64| (BELOW * u8::from(found < limit)) | (COLLIDED * u8::from(found < collision));
         let interesting = limit.max(collision);
         for i in 0..self.robots.len() {
             let own = self.moves[i];

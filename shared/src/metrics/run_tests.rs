@@ -126,7 +126,9 @@ fn json_holds_null_where_there_is_nothing_to_meet() {
 }
 
 /// Positions of robots over ticks, `[tick][robot]`, radii and obstacles.
-fn runs() -> impl Strategy<Value = (Vec<Vec<Position>>, Vec<Option<f64>>, Vec<(Position, Option<f64>)>)> {
+type Run = (Vec<Vec<Position>>, Vec<Option<f64>>, Vec<(Position, Option<f64>)>);
+
+fn runs() -> impl Strategy<Value = Run> {
     let point = || (-4.0f64..4.0, -4.0f64..4.0).prop_map(|(x, y)| at(x, y));
     let radius = || prop::option::of(0.2f64..1.5);
     (1usize..6, 1usize..8).prop_flat_map(move |(robots, ticks)| {
