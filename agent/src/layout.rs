@@ -18,13 +18,10 @@ pub struct Layout {
 impl Layout {
     /// The layout of a scenario; discs without a radius of their own have min_separation / 2.
     pub fn of(scenario: &Scenario, min_separation: f64) -> Self {
-        let extra = |radius: Option<f64>| radius.map_or(0.0, |radius| radius - min_separation / 2.0);
-        let disc =
-            |obstacle: &shared::scenario::Obstacle| Disc { centre: obstacle.position, extra: extra(obstacle.radius) };
         Self {
             set_points: scenario.robots.iter().map(|robot| robot.set_point).collect(),
-            robot_extra: scenario.robots.iter().map(|robot| extra(robot.radius)).collect(),
-            obstacles: scenario.obstacles.iter().map(disc).collect(),
+            robot_extra: scenario.robots.iter().map(|robot| robot.extra_radius(min_separation)).collect(),
+            obstacles: scenario.discs(min_separation),
         }
     }
 }

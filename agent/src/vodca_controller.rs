@@ -87,13 +87,15 @@ impl VodcaController {
         }
         let own = self.previous.as_ref().map_or(view.position, |previous| previous.prediction.state(1));
         let Self { robot, layout, cell, params, .. } = self;
-        let owed = |extra: f64| params.cell.separation + layout.robot_extra[*robot] + extra;
+        let noise = params.cell.noise_bound;
+        let escape = params.cell.escape + noise;
+        let owed = |extra: f64| params.cell.separation + 3.0 * noise + layout.robot_extra[*robot] + extra;
         for (other, neighbour) in view.neighbours.iter().enumerate().filter(|(other, _)| other != robot) {
             let separation = owed(layout.robot_extra[other]);
             match neighbour.present {
                 Some((tick, position)) if tick == view.tick => {
                     let present = Present { position, separation, moves: true };
-                    cell.keep_away(own, &present, params.cell.escape, *robot < other);
+                    cell.keep_away(own, &present, escape, *robot < other);
                 }
                 Some((tick, last)) => cell.stay_near(own, last, separation, view.tick.saturating_sub(tick)),
                 None => cell.reach = 0.0,
@@ -101,7 +103,7 @@ impl VodcaController {
         }
         for obstacle in &layout.obstacles {
             let present = Present { position: obstacle.centre, separation: owed(obstacle.extra), moves: false };
-            cell.keep_away(own, &present, params.cell.escape, true);
+            cell.keep_away(own, &present, escape, true);
         }
         self.rows.extend(self.cell.as_rows(view.position));
     }

@@ -34,6 +34,58 @@ pub struct Params {
     pub horizon: HorizonParams,
     /// When a run has arrived, collided or ended.
     pub episode: Episode,
+    /// Which controller drives the robots.
+    pub controller: Controller,
+    /// The baseline ORCA.
+    pub orca: Orca,
+    /// What disturbs measuring and the exchange, on purpose.
+    pub disturbance: Disturbance,
+}
+
+/// Which controller drives the robots.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Controller {
+    /// Its kind.
+    pub kind: ControllerKind,
+}
+
+/// The controllers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ControllerKind {
+    /// Variable-horizon MPC with VODCA.
+    Vodca,
+    /// Optimal reciprocal collision avoidance (van den Berg et al. 2011), a baseline.
+    Orca,
+}
+
+/// ORCA (van den Berg, Guy, Lin and Manocha 2011); speeds are bounded by norm there.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Orca {
+    /// tau, s: how far ahead velocities stay free of collision.
+    pub time_horizon: f64,
+    /// Robots farther away than this are not seen, m.
+    pub neighbour_distance: f64,
+    /// At most so many robots are seen, the nearest first.
+    pub max_neighbours: usize,
+    /// Angle to the right of the set-point at which a robot aims, rad (ORCA-RH: 0.35).
+    pub aim: f64,
+}
+
+/// What disturbs measuring and the exchange, on purpose (safe.md, section 3). All draws are seeded.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Disturbance {
+    /// Largest error of a measured position, m; drawn uniformly from a disc.
+    pub noise: f64,
+    /// Plans arrive this many ticks late; positions do not.
+    pub plan_delay: usize,
+    /// Share of plans that get lost; positions do not.
+    pub plan_loss: f64,
+    /// Share of messages that get lost whole, with plan and position.
+    pub position_loss: f64,
 }
 
 /// The robot and its surroundings (paper, Table I).
@@ -194,8 +246,11 @@ pub struct Cell {
     pub enabled: bool,
     /// r_s, m: separation kept by the cells.
     pub separation: f64,
-    /// Move away demanded per tick where the distance is below `separation`, m.
+    /// kappa, m: move away demanded per tick where the distance is below the cells' separation.
     pub escape: f64,
+    /// E, m: the cells keep `separation + 3 E` and demand `escape + E`, so that measuring errors of at
+    /// most E per position leave `separation` (safe.md, section 2).
+    pub noise_bound: f64,
 }
 
 /// Changes of the horizon after its source chose it.

@@ -6,17 +6,21 @@ use std::str::FromStr;
 
 /// The named parameter sets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
+#[serde(rename_all = "kebab-case")]
 pub enum Profile {
     /// The paper's method, read as method.md says.
     Paper,
     /// Full separation by construction, and everyone arrives (safe.md).
     Safe,
+    /// The baseline ORCA.
+    Orca,
+    /// ORCA, aiming to the right.
+    OrcaRh,
 }
 
 /// A profile nobody knows.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("unknown profile `{0}`; the profiles are: paper, safe")]
+#[error("unknown profile `{0}`; the profiles are: paper, safe, orca, orca-rh")]
 pub struct UnknownProfile(pub String);
 
 impl FromStr for Profile {
@@ -25,6 +29,8 @@ impl FromStr for Profile {
         match name {
             "paper" => Ok(Self::Paper),
             "safe" => Ok(Self::Safe),
+            "orca" => Ok(Self::Orca),
+            "orca-rh" => Ok(Self::OrcaRh),
             other => Err(UnknownProfile(other.into())),
         }
     }
@@ -35,6 +41,8 @@ impl fmt::Display for Profile {
         f.pad(match self {
             Self::Paper => "paper",
             Self::Safe => "safe",
+            Self::Orca => "orca",
+            Self::OrcaRh => "orca-rh",
         })
     }
 }
@@ -60,9 +68,12 @@ impl Params {
             },
             aim: Aim { angle: 0.0, memory: 0.1, fade_start: 1.5, fade_end: 4.5 },
             give_way: GiveWay { radius: 0.0, clearance: 0.1 },
-            cell: Cell { enabled: false, separation: 1.5, escape: 0.0 },
+            cell: Cell { enabled: false, separation: 1.5, escape: 0.0, noise_bound: 0.0 },
             horizon: HorizonParams { jitter: 0 },
             episode: Episode { arrival_tolerance: 0.1, collision_factor: 0.5 },
+            controller: Controller { kind: ControllerKind::Vodca },
+            orca: Orca { time_horizon: 2.0, neighbour_distance: 15.0, max_neighbours: 20, aim: 0.0 },
+            disturbance: Disturbance { noise: 0.0, plan_delay: 0, plan_loss: 0.0, position_loss: 0.0 },
         }
     }
 
@@ -79,11 +90,28 @@ impl Params {
         params
     }
 
+    /// The baseline ORCA: no plans, no guarantee.
+    pub fn orca() -> Self {
+        let mut params = Self::paper();
+        params.controller.kind = ControllerKind::Orca;
+        params
+    }
+
+    /// ORCA with every robot aiming to the right of its set-point: the strongest baseline found.
+    pub fn orca_rh() -> Self {
+        let mut params = Self::orca();
+        params.orca.time_horizon = 1.0;
+        params.orca.aim = 0.35;
+        params
+    }
+
     /// The parameters of a profile.
     pub fn of(profile: Profile) -> Self {
         match profile {
             Profile::Paper => Self::paper(),
             Profile::Safe => Self::safe(),
+            Profile::Orca => Self::orca(),
+            Profile::OrcaRh => Self::orca_rh(),
         }
     }
 }
@@ -94,10 +122,10 @@ mod tests {
 
     #[test]
     fn profiles_are_known_by_the_names_they_print() {
-        for profile in [Profile::Paper, Profile::Safe] {
+        for profile in [Profile::Paper, Profile::Safe, Profile::Orca, Profile::OrcaRh] {
             assert_eq!(profile.to_string().parse(), Ok(profile));
         }
         let message = "fast".parse::<Profile>().unwrap_err().to_string();
-        assert_eq!(message, "unknown profile `fast`; the profiles are: paper, safe");
+        assert_eq!(message, "unknown profile `fast`; the profiles are: paper, safe, orca, orca-rh");
     }
 }

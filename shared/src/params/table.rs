@@ -134,9 +134,19 @@ pub const ENTRIES: &[Entry] = &[
     entry("cell.enabled", "-", Switch, "safe rules 5 and 6", "the guarantee of separation; off: only the rows of vodca"),
     entry("cell.separation", "m", Above(0.0, 100.0), "safe rule 5: r_s", "separation guaranteed; measurement noise of at most E per position needs min_separation + 3 E"),
     entry("cell.escape", "m/tick", Between(0.0, 10.0), "safe section 2: kappa", "move away demanded where the distance is below cell.separation"),
+    entry("cell.noise_bound", "m", Between(0.0, 10.0), "safe section 2: E", "measuring errors of at most this leave cell.separation: cells keep 3 E more and demand E more escape"),
     entry("horizon.jitter", "step", Whole(0, 48), "ours", "each horizon moves by a seeded draw of at most this; breaks limit cycles of fixed horizons"),
     entry("episode.arrival_tolerance", "m", Above(0.0, 100.0), "paper: e < 0.1", "a robot nearer to its set-point than this has arrived"),
     entry("episode.collision_factor", "-", Between(0.0, 1.0), "paper: 0.5 r_min", "share of min_separation below which two discs count as collided"),
+    entry("controller.kind", "-", OneOf(&["vodca", "orca"]), "ours", "vodca: the MPC; orca: the baseline without plans and without guarantee"),
+    entry("orca.time_horizon", "s", Above(0.0, 100.0), "van den Berg 2011: tau", "longer: earlier and wider avoidance, deadlocks in dense scenes"),
+    entry("orca.neighbour_distance", "m", Above(0.0, 1000.0), "RVO2: neighborDist", "robots farther away are not seen"),
+    entry("orca.max_neighbours", "robot", Whole(0, 200), "RVO2: maxNeighbors", "at most so many robots are seen, the nearest first"),
+    entry("orca.aim", "rad", Between(0.0, 1.5), "ours: ORCA-RH 0.35", "every robot aims this far to the right of its set-point"),
+    entry("disturbance.noise", "m", Between(0.0, 10.0), "safe section 3", "largest error of a measured position, uniform over a disc"),
+    entry("disturbance.plan_delay", "tick", Whole(0, 100), "safe section 3", "plans arrive late; positions do not"),
+    entry("disturbance.plan_loss", "-", Between(0.0, 1.0), "safe section 3", "share of plans that get lost; positions do not"),
+    entry("disturbance.position_loss", "-", Between(0.0, 1.0), "safe section 3", "share of messages that get lost whole"),
 ];
 
 /// The entry of `key`.
