@@ -7,8 +7,9 @@ use shared::params::Params;
 use shared::scenario::Scenario;
 use shared::step::Step;
 
-/// Runs the team until everybody has arrived or `scenario.max_ticks` have passed; `horizon(robot, tick)` is
-/// N_i^k after any jitter. `on_tick` sees every tick and ends the run by an error.
+/// Runs the team until everybody has arrived or `scenario.max_ticks` have passed, but for one tick at
+/// least, as a team of processes does; `horizon(robot, tick)` is N_i^k after any jitter. `on_tick` sees
+/// every tick and ends the run by an error.
 pub fn run_team<E>(
     scenario: &Scenario,
     params: &Params,
@@ -17,11 +18,13 @@ pub fn run_team<E>(
 ) -> Result<RunMetrics, E> {
     let mut metrics = RunMetrics::new(scenario, params);
     let mut team = Team::new(scenario, params);
-    while !metrics.arrived_all() && team.tick() < scenario.max_ticks {
-        let tick = team.tick();
+    for tick in 0..scenario.max_ticks {
         let steps = team.step(|robot| horizon(robot, tick));
         metrics.observe(tick, steps);
         on_tick(tick, steps)?;
+        if metrics.arrived_all() {
+            break;
+        }
     }
     Ok(metrics)
 }

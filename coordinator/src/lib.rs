@@ -1,4 +1,18 @@
 //! The coordinator: starts the team, keeps it in lock step, records and judges what it did.
+//!
+//! Offline commands (sweep, compare, golden, replay) run whole teams in this process.
 
+pub mod cli;
+pub mod commands;
+pub mod exit;
+pub mod guarantee;
+pub mod in_process;
 pub mod latency;
+pub mod parallel;
+pub mod progress;
 pub mod record;
+pub mod report;
+pub mod session;
+pub mod summary;
+pub mod text_table;
+pub mod verify;

@@ -1,7 +1,7 @@
 //! `golden`: checks files of reference results in this process.
 
 use crate::exit::{Ending, Failure, Outcome};
-use agent::golden::check_folder;
+use agent::golden::{Deviation, Verdict, check_folder};
 use std::path::PathBuf;
 
 /// Arguments of `golden`.
@@ -19,10 +19,10 @@ pub struct Args {
 pub fn run(args: Args) -> Ending {
     let verdicts = check_folder(&args.folder).map_err(Failure::broken)?;
     let mut bad = 0;
-    for verdict in &verdicts {
-        if verdict.deviation.is_some() {
+    for Verdict { case, deviation } in &verdicts {
+        if let Some(Deviation { tick, robot, what, deviation, allowed }) = deviation {
             bad += 1;
-            println!("{verdict}");
+            println!("{case}: tick {tick}, robot {robot}: {what} deviates by {deviation:.3e}, allowed {allowed:.3e}");
         }
     }
     println!("{} cases, {bad} bad", verdicts.len());

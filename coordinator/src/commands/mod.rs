@@ -3,6 +3,7 @@
 pub mod compare;
 pub mod golden;
 pub mod params;
+pub mod range;
 pub mod replay;
 pub mod run;
 pub mod scenario;

@@ -118,6 +118,22 @@ impl RunFolder {
     }
 }
 
+/// `out`, or a new `runs/<UTC time>-<name>.<ending>` whose folder exists.
+pub fn new_file(out: Option<&Path>, name: &str, ending: &str) -> Result<PathBuf, RecordError> {
+    if let Some(out) = out {
+        return Ok(out.to_owned());
+    }
+    let runs = Path::new("runs");
+    fs::create_dir_all(runs).map_err(|source| RecordError::Folder { path: runs.to_owned(), source })?;
+    Ok(runs.join(format!("{}-{}.{ending}", utc_now(), plain(name))))
+}
+
+/// Writes a file that must not exist yet.
+pub fn write_new(path: &Path, content: &[u8]) -> Result<(), RecordError> {
+    let written = File::create_new(path).and_then(|mut file| file.write_all(content));
+    written.map_err(|source| RecordError::Write { path: path.to_owned(), source })
+}
+
 /// A file that grows record by record. When a write fails midway the file is cut back to its last whole
 /// record, so that a full disk leaves a readable file.
 #[derive(Debug)]

@@ -60,13 +60,13 @@ impl Recorder {
         params: &Params,
         about: &About,
     ) -> Result<Self, RecordError> {
-        folder.write(SCENARIO_FILE, scenario.to_toml().as_bytes())?;
+        let encode = |name, what, reason| RecordError::Encode { path: folder.file(name), what, reason };
+        let scenario_text =
+            scenario.to_toml().map_err(|error| encode(SCENARIO_FILE, "the scenario", error.to_string()))?;
+        let about = toml::to_string(about)
+            .map_err(|error| encode(about::FILE, "the run's description", error.to_string()))?;
+        folder.write(SCENARIO_FILE, scenario_text.as_bytes())?;
         folder.write(PARAMS_FILE, params.to_toml().as_bytes())?;
-        let about = toml::to_string(about).map_err(|error| RecordError::Encode {
-            path: folder.file(about::FILE),
-            what: "the run's description",
-            reason: error.to_string(),
-        })?;
         folder.write(about::FILE, about.as_bytes())?;
         Ok(Self {
             trajectory: TrajectoryWriter::create(folder.file(trajectory::FILE))?,

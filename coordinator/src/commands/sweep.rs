@@ -1,0 +1,184 @@
+//! `sweep`: one scenario with many horizons or seeds, in this process.
+
+use super::range::Numbers;
+use crate::exit::{Ending, Failure, Outcome};
+use crate::in_process::run_team;
+use crate::progress::Progress;
+use crate::record::folder::new_file;
+use crate::text_table::TextTable;
+use crate::{parallel, record};
+use shared::horizon_source::{HorizonSource, HorizonSourceError, HorizonSpec};
+use shared::metrics::RunSummary;
+use shared::params::{Params, Profile};
+use shared::scenario::{Scenario, set_up};
+use std::convert::Infallible;
+use std::path::PathBuf;
+use std::str::FromStr;
+
+/// Arguments of `sweep`.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "\
+Examples:
+  ./run.sh sweep --scenario ex14_d --horizons 1..49 --profile paper --set vodca.rows=each
+  ./run.sh sweep --scenario two_setpoint --horizons 5,10,20,49 --profile paper
+  ./run.sh sweep --scenario four_gate --horizons random:0..19 --profile paper
+  ./run.sh sweep --scenario rand8o3_s0 --horizons 20 --seeds 0..9")]
+pub struct Args {
+    /// Scenario: file, built-in name or family
+    #[arg(long)]
+    scenario: String,
+    /// Fixed horizons (1..49 or 5,10,20), or random ones by seed (random:0..19); both ends included
+    #[arg(long, default_value = "1..49")]
+    horizons: Horizons,
+    /// Seeds of the run (jitter), instead of the scenario's own: 0..9, both ends included
+    #[arg(long)]
+    seeds: Option<Numbers>,
+    /// Parameter set: safe or paper
+    #[arg(long, default_value = "safe")]
+    profile: Profile,
+    /// Change a parameter (repeatable)
+    #[arg(long, value_name = "KEY=VALUE")]
+    set: Vec<String>,
+    /// Last tick, instead of the scenario's
+    #[arg(long)]
+    max_ticks: Option<u64>,
+    /// The CSV to write; left out, a new file in runs/
+    #[arg(long)]
+    out: Option<PathBuf>,
+}
+
+/// `1..49`, `5,10,20` or `random:0..19`.
+#[derive(Clone, Debug)]
+struct Horizons(Vec<HorizonSpec>);
+
+impl FromStr for Horizons {
+    type Err = HorizonSourceError;
+
+    fn from_str(text: &str) -> Result<Self, HorizonSourceError> {
+        let wrong = |error: super::range::NumbersError| HorizonSourceError::Spec { spec: text.into(), reason: error.to_string() };
+        let (kind, list) = text.split_once(':').unwrap_or(("fixed", text));
+        match kind {
+            "fixed" | "random" => {
+                let Numbers(numbers) = list.parse().map_err(wrong)?;
+                numbers.iter().map(|number| format!("{kind}:{number}").parse()).collect::<Result<_, _>>().map(Self)
+            }
+            _ => Ok(Self(vec![text.parse()?])),
+        }
+    }
+}
+
+struct Job {
+    spec: HorizonSpec,
+    source: HorizonSource,
+    scenario: Scenario,
+}
+
+/// Runs the sweep, prints the table and writes it as CSV.
+pub fn run(args: Args) -> Ending {
+    let (scenario, params) = set_up(Some(&args.scenario), None, args.profile, &args.set).map_err(Failure::usage)?;
+    let jobs = jobs(&args, &scenario, &params).map_err(Failure::usage)?;
+    let progress = Progress::of_work(jobs.len());
+    let results = parallel::map(&jobs, |job| run_one(job, &params), || progress.advance());
+    progress.finish();
+
+    let mut table = TextTable::new(&[
+        "horizon", "seed", "success", "ticks", "path", "ratio", "min_separation", "collisions", "activations", "infeasible",
+    ]);
+    for (job, result) in jobs.iter().zip(&results) {
+        table.row(row(job, result));
+    }
+    print!("{}", table.aligned());
+    println!("{}", verdict(&jobs, &results));
+    let path = new_file(args.out.as_deref(), &format!("sweep-{}", scenario.name), "csv").map_err(Failure::broken)?;
+    record::folder::write_new(&path, table.csv().as_bytes()).map_err(Failure::broken)?;
+    println!("{}", path.display());
+    Ok(Outcome::Done)
+}
+
+fn jobs(args: &Args, scenario: &Scenario, params: &Params) -> Result<Vec<Job>, HorizonSourceError> {
+    let seeds = args.seeds.as_ref().map_or(vec![scenario.seed], |seeds| seeds.0.clone());
+    let mut jobs = Vec::new();
+    for spec in &args.horizons.0 {
+        for &seed in &seeds {
+            let mut scenario = Scenario { seed, ..scenario.clone() };
+            scenario.max_ticks = args.max_ticks.unwrap_or(scenario.max_ticks);
+            let source = HorizonSource::new(spec, scenario.robots.len(), seed, params.horizon.jitter)?;
+            jobs.push(Job { spec: spec.clone(), source, scenario });
+        }
+    }
+    Ok(jobs)
+}
+
+fn run_one(job: &Job, params: &Params) -> RunSummary {
+    let outcome = run_team(&job.scenario, params, |robot, tick| job.source.horizon(robot, tick), |_, _| Ok::<(), Infallible>(()));
+    match outcome {
+        Ok(metrics) => metrics.finish(),
+        Err(never) => match never {},
+    }
+}
+
+fn row(job: &Job, run: &RunSummary) -> [String; 10] {
+    [
+        job.spec.to_string(),
+        job.scenario.seed.to_string(),
+        if run.success { "yes" } else { "no" }.into(),
+        run.ticks.to_string(),
+        format!("{:.2}", run.path_cost),
+        run.path_ratio.map_or("-".into(), |ratio| format!("{ratio:.4}")),
+        run.min_separation.map_or("-".into(), |least| format!("{least:.6}")),
+        run.collisions.to_string(),
+        run.activations.to_string(),
+        run.infeasible.to_string(),
+    ]
+}
+
+/// How many succeeded, and the shortest and the median path among them.
+fn verdict(jobs: &[Job], results: &[RunSummary]) -> String {
+    let mut good: Vec<(f64, &Job)> =
+        results.iter().zip(jobs).filter(|(run, _)| run.success).map(|(run, job)| (run.path_cost, job)).collect();
+    good.sort_by(|a, b| a.0.total_cmp(&b.0));
+    match good.as_slice() {
+        [] => format!("0 of {} succeeded", jobs.len()),
+        [(best, job), ..] => format!(
+            "{} of {} succeeded; shortest path {best:.2} m with {} (seed {}); median path {:.2} m",
+            good.len(),
+            jobs.len(),
+            job.spec,
+            job.scenario.seed,
+            good[good.len() / 2].0
+        ),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn horizons_are_lists_of_fixed_or_random_ones() {
+        let specs = |text: &str| text.parse::<Horizons>().map(|horizons| horizons.0.iter().map(HorizonSpec::to_string).collect::<Vec<_>>());
+        assert_eq!(specs("5,10").unwrap(), ["fixed:5", "fixed:10"]);
+        assert_eq!(specs("random:0..2").unwrap(), ["random:0", "random:1", "random:2"]);
+        assert!(specs("0..3").unwrap_err().to_string().contains("1..=49"));
+        assert!(specs("twenty").unwrap_err().to_string().contains("fixed:20"));
+    }
+
+    #[test]
+    fn one_row_per_horizon_and_seed() {
+        let place = tempfile::tempdir().unwrap();
+        let out = place.path().join("sweep.csv");
+        let args = Args {
+            scenario: "ring:2".into(),
+            horizons: "10,20".parse().unwrap(),
+            seeds: Some("0..2".parse().unwrap()),
+            profile: Profile::Safe,
+            set: vec![],
+            max_ticks: Some(3),
+            out: Some(out.clone()),
+        };
+        assert_eq!(run(args).unwrap(), Outcome::Done);
+        let text = std::fs::read_to_string(out).unwrap();
+        assert_eq!(text.lines().count(), 1 + 2 * 3);
+        assert!(text.lines().nth(1).unwrap().starts_with("fixed:10,0,no,3,"), "{text}");
+    }
+}

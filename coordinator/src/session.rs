@@ -1,0 +1,63 @@
+//! Everything that watches a run: record, metrics, timings, progress. Whoever produces the ticks hands them in.
+
+use crate::progress::Progress;
+use crate::record::{About, RecordError, Recorder, RunFolder};
+use crate::summary::{End, Summary, Timings};
+use shared::metrics::RunMetrics;
+use shared::params::Params;
+use shared::scenario::Scenario;
+use shared::step::Step;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// A run that is being watched.
+pub struct Session {
+    scenario: Scenario,
+    params: Params,
+    about: About,
+    recorder: Recorder,
+    metrics: RunMetrics,
+    timings: Timings,
+    progress: Progress,
+}
+
+impl Session {
+    /// Writes what is known before the first tick into `folder` and shows the progress line.
+    pub fn start(folder: RunFolder, scenario: &Scenario, params: &Params, about: About) -> Result<Self, RecordError> {
+        Ok(Self {
+            recorder: Recorder::start(folder, scenario, params, &about)?,
+            metrics: RunMetrics::new(scenario, params),
+            timings: Timings::new(scenario.robots.len()),
+            progress: Progress::of_run(scenario.max_ticks),
+            scenario: scenario.clone(),
+            params: params.clone(),
+            about,
+        })
+    }
+
+    /// Takes in tick `tick`, which took `duration`; `steps[i]` is what robot i did. `true`: everybody has
+    /// arrived, the run is over.
+    pub fn tick(&mut self, tick: u64, steps: &[Step], duration: Duration) -> Result<bool, RecordError> {
+        self.recorder.tick(tick, steps)?;
+        self.metrics.observe(tick, steps);
+        self.timings.observe(duration, steps);
+        let metrics = &self.metrics;
+        self.progress.tick(tick + 1, metrics.arrived(), steps.len(), metrics.min_separation());
+        Ok(metrics.arrived_all())
+    }
+
+    /// The run's folder.
+    pub fn path(&self) -> &Path {
+        self.recorder.path()
+    }
+
+    /// Ends the record with its summary, for failed and interrupted runs as well. Gives the summary and
+    /// the folder.
+    pub fn finish(self, end: End) -> Result<(Summary, PathBuf), RecordError> {
+        self.progress.finish();
+        let names = (self.about.profile.as_str(), self.about.horizon.as_str());
+        let summary = Summary::new(&self.scenario, &self.params, names, end, self.metrics.finish(), &self.timings);
+        let folder = self.recorder.finish(&summary)?;
+        Ok((summary, folder))
+    }
+}
