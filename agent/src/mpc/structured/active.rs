@@ -28,6 +28,9 @@ const DUAL_TOLERANCE: f64 = 1e-12;
 pub(super) struct ActiveSet {
     pub(super) bounds: Bounds,
     pub(super) rows: Vec<RowState>,
+    /// Indices of the rows that are not open, in the order in which they became active: where rows
+    /// depend on each other, the earlier ones stay.
+    pub(super) order: Vec<usize>,
 }
 
 /// One constraint that a solution violates.
@@ -41,7 +44,7 @@ pub(super) enum Constraint {
 
 impl ActiveSet {
     pub(super) fn new(row_capacity: usize) -> Self {
-        Self { bounds: [[0; 2]; MAX_HORIZON], rows: Vec::with_capacity(row_capacity) }
+        Self { bounds: [[0; 2]; MAX_HORIZON], rows: Vec::with_capacity(row_capacity), order: Vec::with_capacity(row_capacity) }
     }
 
     /// Nothing active, for the rows of `problem`.
@@ -49,6 +52,7 @@ impl ActiveSet {
         self.bounds = [[0; 2]; MAX_HORIZON];
         self.rows.clear();
         self.rows.resize(problem.rows.len(), RowState::Open);
+        self.order.clear();
     }
 
     /// Copies `other` without allocating, given enough capacity.
@@ -56,6 +60,8 @@ impl ActiveSet {
         self.bounds = other.bounds;
         self.rows.clear();
         self.rows.extend_from_slice(&other.rows);
+        self.order.clear();
+        self.order.extend_from_slice(&other.order);
     }
 
     /// Adds every constraint that the solution violates; returns the most violated one.
@@ -80,6 +86,7 @@ impl ActiveSet {
             let excess = -row.gap(&solution.chain.states[row.step - 1]);
             if excess > GAP_TOLERANCE && self.rows[index] == RowState::Open {
                 self.rows[index] = RowState::Tight;
+                self.order.push(index);
                 if excess > most * problem.sample_time {
                     most = excess / problem.sample_time;
                     worst = Some(Constraint::Row(index));
@@ -108,26 +115,37 @@ impl ActiveSet {
                 }
             }
         }
-        for (index, state) in self.rows.iter_mut().enumerate() {
+        let linear = problem.slack.linear;
+        for &index in &self.order {
             let price = solution.prices[index];
+            let state = &mut self.rows[index];
             let right = match *state {
-                RowState::Open => RowState::Open,
                 _ if price < -small => RowState::Open,
-                RowState::Tight if !problem.rows[index].hard && price > problem.slack.linear => RowState::Violated,
-                RowState::Violated if price < problem.slack.linear => RowState::Tight,
+                RowState::Tight if !problem.rows[index].hard && price > linear + small => RowState::Violated,
+                RowState::Violated if price < linear - small => RowState::Tight,
                 same => same,
             };
             changed |= right != *state;
             *state = right;
         }
+        self.forget_open();
         changed
     }
 
-    /// Makes `constraint` active.
+    /// Makes `constraint`, which is not active, active.
     pub(super) fn add(&mut self, constraint: Constraint, row_state: RowState) {
         match constraint {
             Constraint::Bound { l, axis, sign } => self.bounds[l][axis] = sign,
-            Constraint::Row(index) => self.rows[index] = row_state,
+            Constraint::Row(index) => {
+                self.rows[index] = row_state;
+                self.order.push(index);
+            }
         }
+    }
+
+    /// Removes rows that were made open from the order.
+    pub(super) fn forget_open(&mut self) {
+        let rows = &self.rows;
+        self.order.retain(|&index| rows[index] != RowState::Open);
     }
 }

@@ -101,10 +101,8 @@ impl Equality {
         self.chain.factor(&set.bounds);
         self.members.clear();
         self.factor.clear();
-        for (index, state) in set.rows.iter_mut().enumerate() {
-            if *state == RowState::Open {
-                continue;
-            }
+        for &index in &set.order {
+            let state = &mut set.rows[index];
             if self.members.len() == MAX_ACTIVE {
                 return Err(TooManyRows);
             }
@@ -123,6 +121,9 @@ impl Equality {
                 *state = RowState::Open;
             }
         }
+        if self.members.len() < set.order.len() {
+            set.forget_open();
+        }
         Ok(())
     }
 
@@ -135,8 +136,9 @@ impl Equality {
             input_cost += (self.chain.inputs[l] - problem.target.inputs[l]).norm_squared();
         }
         let mut cost = problem.state_weight * state_cost + problem.input_weight * input_cost;
-        for (row, state) in problem.rows.iter().zip(&set.rows) {
-            if *state == RowState::Violated {
+        for &index in &set.order {
+            if set.rows[index] == RowState::Violated {
+                let row = &problem.rows[index];
                 let excess = -row.gap(&self.chain.states[row.step - 1]);
                 cost += excess * (problem.slack.linear + 0.5 * problem.slack.quadratic * excess);
             }

@@ -96,12 +96,14 @@ impl Structured {
                 continue;
             }
             self.stats[1] += 1;
+            if std::env::var("TRACE").is_ok() { eprintln!("it {iterations} cost {cost} worst {worst:?} trial {:?} accepted {:?} prices {:?} b {:?}", self.trial.rows, self.accepted.rows, self.equality.prices, &self.accepted.bounds[..1]); }
             *iterations += 1;
             self.equality.solve(problem, &mut self.accepted).map_err(|_| too_many(iterations))?;
             let outcome = self
                 .single_step
                 .run(problem, &mut self.equality, &mut self.accepted, worst, iterations, MAX_ITERATIONS)
                 .map_err(|_| too_many(iterations))?;
+            if std::env::var("TRACE").is_ok() { eprintln!("  outcome {outcome:?} {:?} b {:?} prices {:?}", self.accepted.rows, &self.accepted.bounds[..1], self.equality.prices); }
             match outcome {
                 Outcome::Added => {}
                 Outcome::Infeasible => return Err(SolveError::Infeasible),

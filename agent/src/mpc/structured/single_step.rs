@@ -12,6 +12,9 @@ use super::equality::{DEPENDENT, Equality, TooManyRows, freest};
 use nalgebra::Vector2;
 use shared::horizon::MAX_HORIZON;
 
+/// Rates of change below this share of the largest are rounding.
+const NEGLIGIBLE: f64 = 1e-11;
+
 /// How a step ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Outcome {
@@ -112,7 +115,10 @@ impl SingleStep {
             price += length;
             match event {
                 Event::FreeInput { l, axis } => set.bounds[l][axis] = 0,
-                Event::SetRow { index, state } => set.rows[index] = state,
+                Event::SetRow { index, state } => {
+                    set.rows[index] = state;
+                    set.forget_open();
+                }
                 Event::AddedViolated => violated = true,
                 Event::Met => {
                     set.add(constraint, if violated { RowState::Violated } else { RowState::Tight });
@@ -194,9 +200,13 @@ impl SingleStep {
         reach: f64,
     ) -> (f64, Event) {
         let mut first = (reach, Event::Met);
-        let mut consider = |left: f64, rate: f64, event: Event| {
+        // Rates that are rounding of zero end nothing: forces that cancel leave about 1e-16 of them.
+        let unit = if matches!(constraint, Constraint::Row(_)) { 1.0 } else { 1.0 / problem.sample_time };
+        let negligible = NEGLIGIBLE * self.rates.iter().fold(unit, |a, r| a.max(r.abs()));
+        let negligible_gradient = negligible * problem.sample_time;
+        let mut consider = |left: f64, rate: f64, negligible: f64, event: Event| {
             // `left` shrinks by `rate` per unit; what is already gone ends the way at once.
-            if rate > 0.0 && left.max(0.0) < first.0 * rate {
+            if rate > negligible && left.max(0.0) < first.0 * rate {
                 first = (left.max(0.0) / rate, event);
             }
         };
@@ -207,7 +217,7 @@ impl SingleStep {
             let change = equality.chain.gradient(l, Vector2::zeros());
             for axis in 0..2 {
                 let sign = f64::from(set.bounds[l][axis]);
-                consider(-sign * self.gradient[l][axis], sign * change[axis], Event::FreeInput { l, axis });
+                consider(-sign * self.gradient[l][axis], sign * change[axis], negligible_gradient, Event::FreeInput { l, axis });
             }
         }
         let linear = problem.slack.linear;
@@ -215,11 +225,11 @@ impl SingleStep {
             let have = self.prices[index];
             let state = |state| Event::SetRow { index, state };
             if set.rows[index] == RowState::Violated {
-                consider(have - linear, rate, state(RowState::Tight));
+                consider(have - linear, rate, negligible, state(RowState::Tight));
             } else {
-                consider(have, rate, state(RowState::Open));
+                consider(have, rate, negligible, state(RowState::Open));
                 if !problem.rows[index].hard {
-                    consider(linear - have, -rate, state(RowState::Violated));
+                    consider(linear - have, -rate, negligible, state(RowState::Violated));
                 }
             }
         }
@@ -227,7 +237,7 @@ impl SingleStep {
             && !problem.rows[index].hard
             && !violated
         {
-            consider(linear - price, 1.0, Event::AddedViolated);
+            consider(linear - price, 1.0, 0.0, Event::AddedViolated);
         }
         first
     }
