@@ -4,6 +4,7 @@
 //! nothing of the system; see ARCHITECTURE.md for the map.
 
 pub mod horizon;
+pub mod horizon_source;
 pub mod metrics;
 pub mod params;
 pub mod prediction;

@@ -173,6 +173,7 @@ impl Scenario {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::params::{Params, Profile};
     use proptest::prelude::*;
 
     const GOOD: &str = "version = 1\n[[robot]]\nstart = [0, 0.5]\nset_point = [5.0, 0.0]\n";
@@ -222,6 +223,17 @@ mod tests {
         assert_eq!(copy, scenario);
         assert_eq!((copy.name.as_str(), copy.robots[0].name.as_str()), ("mine", "left"));
         assert_eq!(copy.params["vodca"]["turn"].as_float(), Some(0.1));
+    }
+
+    #[test]
+    fn the_example_of_the_documentation_is_valid() {
+        let page = include_str!("../../../scenarios/README.md");
+        let example = page.split("```toml\n").nth(1).and_then(|rest| rest.split("```").next()).unwrap();
+        let scenario = Scenario::from_toml(example, "example", "scenarios/README.md").unwrap();
+        let params = Params::resolve(Profile::Safe, &scenario.name, &scenario.params, &[]).unwrap();
+        scenario.validate_distances(params.model.min_separation).unwrap();
+        assert_eq!((scenario.robots[1].name.as_str(), scenario.obstacles[0].radius), ("left", Some(1.0)));
+        assert_eq!(params.horizon.jitter, 2);
     }
 
     #[test]

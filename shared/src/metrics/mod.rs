@@ -1,7 +1,17 @@
 //! What a run is judged by, computed the same way in every process and offline.
 
+mod run;
+mod summary;
+
+pub use run::RunMetrics;
+pub use summary::{RobotSummary, RunSummary, SolverLevels, Statuses};
+
 use crate::Position;
 use crate::separation::separation;
+
+/// Distances that count as below min_separation are more than this below it, m: paths touch it exactly
+/// (safe.md, section 5).
+pub const SEPARATION_TOLERANCE: f64 = 1e-6;
 
 /// A disc that may be hit: the separation it is owed beyond min_separation is `extra`, m
 /// (its radius minus min_separation / 2).
