@@ -22,13 +22,6 @@ impl Neighbour {
     pub fn at_start(start: Position, set_point: Position) -> Self {
         Self { plan: None, present: Some((0, start)), set_point }
     }
-
-    /// Takes the plan computed at `tick`; its state(1) is the robot's position at `tick + 1`.
-    pub fn hear(&mut self, tick: u64, plan: &Prediction) {
-        self.present = Some((tick + 1, plan.state(1)));
-        self.set_point = plan.set_point;
-        self.plan = Some((tick, plan.clone()));
-    }
 }
 
 /// What a robot knows when it plans tick `k`.

@@ -1,9 +1,12 @@
 //! One robot of the team: predicts, detects conflicts, solves its own MPC, publishes its plan.
+pub mod baseline;
 pub mod controller;
 pub mod golden;
+pub mod hearing;
 pub mod layout;
 pub mod mpc;
 pub mod reference;
+pub mod robot;
 pub mod safety;
 pub mod team;
 pub mod vodca;

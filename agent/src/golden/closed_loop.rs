@@ -67,7 +67,7 @@ impl Case {
 
     /// Runs the loop and finds the first deviation.
     pub fn check(&self, tolerance: f64) -> Result<Option<Deviation>, String> {
-        let mut team = Team::new(&self.scenario(), &self.params()?);
+        let mut team = Team::new(&self.scenario(), &self.params()?, 0);
         for (tick, horizons) in self.horizons.iter().enumerate() {
             let steps = team.step(|robot| horizons[robot]);
             for (robot, step) in steps.iter().enumerate() {
@@ -83,8 +83,7 @@ impl Case {
                 let position = Deviation { tick: tick + 1, robot, what: "position, m", deviation: off, allowed };
                 let deviation = counted("rows", step.rows, self.rows[tick][robot])
                     .or_else(|| counted("infeasible", infeasible, wanted))
-                    // Written so that NaN deviates.
-                    .or_else(|| (!(off <= allowed)).then_some(position));
+                    .or_else(|| (off.is_nan() || off > allowed).then_some(position));
                 if deviation.is_some() {
                     return Ok(deviation);
                 }

@@ -153,8 +153,7 @@ struct Worst {
 
 impl Worst {
     fn see(&mut self, what: &'static str, deviation: f64) {
-        // Written so that NaN deviates.
-        if self.found.is_none() && !(deviation <= self.tolerance) {
+        if self.found.is_none() && (deviation.is_nan() || deviation > self.tolerance) {
             self.found = Some(Deviation { tick: 0, robot: self.robot, what, deviation, allowed: self.tolerance });
         }
     }

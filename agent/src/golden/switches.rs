@@ -61,9 +61,9 @@ pub struct SafeSwitches {
 #[serde(untagged)]
 pub enum Switches {
     /// single_step and closed_loop files.
-    Paper(PaperSwitches),
+    Paper(Box<PaperSwitches>),
     /// safe_closed_loop files.
-    Safe(SafeSwitches),
+    Safe(Box<SafeSwitches>),
 }
 
 impl Switches {

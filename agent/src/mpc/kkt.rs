@@ -23,13 +23,7 @@ pub struct Residual {
 impl Residual {
     /// The larger part, in its own unit. Not a number stays not a number.
     pub fn largest(&self) -> f64 {
-        if self.stationarity.is_nan() {
-            self.stationarity
-        } else if self.stationarity > self.rows {
-            self.stationarity
-        } else {
-            self.rows
-        }
+        worse(self.stationarity, self.rows)
     }
 }
 

@@ -3,6 +3,7 @@
 use super::clarabel::Clarabel;
 use super::closed_form::ClosedForm;
 use super::problem::{Plan, Problem, QpSolver, SolveError};
+use super::structured::Structured;
 use shared::Position;
 use shared::horizon::MAX_HORIZON;
 use shared::step::Level;
@@ -22,10 +23,12 @@ pub struct Counts {
     pub infeasible: u64,
 }
 
-/// Closed form, then Clarabel. Built once per robot.
+/// Closed form, then the structured solver, then Clarabel. Built once per robot; only Clarabel
+/// allocates in a tick.
 #[derive(Clone, Debug)]
 pub struct Ladder {
     closed_form: ClosedForm,
+    structured: Structured,
     clarabel: Clarabel,
     states: [Position; MAX_HORIZON],
     counts: Counts,
@@ -35,6 +38,7 @@ impl Default for Ladder {
     fn default() -> Self {
         Self {
             closed_form: ClosedForm::new(1.0, 1.0, 1.0), // adapts to the first problem's weights
+            structured: Structured::default(),
             clarabel: Clarabel::run_time(),
             states: [Position::zeros(); MAX_HORIZON],
             counts: Counts::default(),
@@ -52,6 +56,18 @@ impl Ladder {
         if self.closed_form.solve(problem, plan, &mut self.states) {
             self.counts.closed_form += 1;
             return Ok(Level::ClosedForm);
+        }
+        match self.structured.solve(problem, plan) {
+            Ok(_) => {
+                self.counts.structured += 1;
+                return Ok(Level::Structured);
+            }
+            Err(SolveError::Infeasible) => {
+                self.counts.structured += 1;
+                self.counts.infeasible += 1;
+                return Err(SolveError::Infeasible);
+            }
+            Err(SolveError::GaveUp { .. }) => {}
         }
         match self.clarabel.solve(problem, plan) {
             Ok(_) => {

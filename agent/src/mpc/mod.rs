@@ -11,3 +11,4 @@ pub mod polish;
 pub mod problem;
 pub mod sample;
 pub mod stacked;
+pub mod structured;

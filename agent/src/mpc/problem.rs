@@ -123,9 +123,12 @@ impl Plan {
         let mut states = [Position::zeros(); MAX_HORIZON];
         self.roll_out(problem, &mut states);
         let mut cost = 0.0;
-        for l in 0..problem.horizon.steps() {
-            cost += problem.state_weight * (states[l] - problem.target.states[l]).norm_squared();
-            cost += problem.input_weight * (self.inputs[l] - problem.target.inputs[l]).norm_squared();
+        let steps = problem.horizon.steps();
+        for (state, target) in states[..steps].iter().zip(&problem.target.states) {
+            cost += problem.state_weight * (state - target).norm_squared();
+        }
+        for (input, target) in self.inputs[..steps].iter().zip(&problem.target.inputs) {
+            cost += problem.input_weight * (input - target).norm_squared();
         }
         for row in problem.rows.iter().filter(|row| !row.hard) {
             let excess = (-row.gap(&states[row.step - 1])).max(0.0);

@@ -1,0 +1,127 @@
+//! What a robot hears of the others, disturbed on purpose where the parameters say so (safe.md,
+//! section 3). Draws depend on seed, tick, sender and listener only.
+
+use crate::controller::Neighbour;
+use shared::Position;
+use shared::params::Disturbance;
+use shared::prediction::Prediction;
+use shared::random::{self, Use};
+use shared::scenario::Scenario;
+
+/// The ears of one robot.
+#[derive(Clone, Debug)]
+pub struct Hearing {
+    listener: usize,
+    seed: u64,
+    disturbance: Disturbance,
+    neighbours: Vec<Neighbour>,
+    /// Plans under way, `plan_delay` per sender, oldest first from `tick % plan_delay`.
+    under_way: Vec<Option<(u64, Prediction)>>,
+}
+
+impl Hearing {
+    /// What `listener` knows before tick 0: the starts of the scenario.
+    pub fn new(listener: usize, scenario: &Scenario, disturbance: &Disturbance, seed: u64) -> Self {
+        let robots = &scenario.robots;
+        Self {
+            listener,
+            seed,
+            disturbance: disturbance.clone(),
+            neighbours: robots.iter().map(|robot| Neighbour::at_start(robot.start, robot.set_point)).collect(),
+            under_way: vec![None; robots.len() * disturbance.plan_delay],
+        }
+    }
+
+    /// All robots by number, as [`crate::controller::View`] wants them.
+    pub fn neighbours(&self) -> &[Neighbour] {
+        &self.neighbours
+    }
+
+    /// Takes the plan that robot `sender` computed at `tick`.
+    pub fn hear(&mut self, tick: u64, sender: usize, plan: &Prediction) {
+        let Disturbance { plan_delay, plan_loss, position_loss, .. } = self.disturbance;
+        if sender != self.listener && self.is_lost(position_loss, tick, sender, 0) {
+            return;
+        }
+        let neighbour = &mut self.neighbours[sender];
+        neighbour.present = Some((tick + 1, plan.state(1)));
+        neighbour.set_point = plan.set_point;
+        let lost = self.is_lost(plan_loss, tick, sender, 1);
+        let news = (!lost).then(|| (tick, plan.clone()));
+        let arrived = if plan_delay == 0 {
+            news
+        } else {
+            let slot = sender * plan_delay + (tick as usize) % plan_delay;
+            std::mem::replace(&mut self.under_way[slot], news)
+        };
+        if arrived.is_some() {
+            self.neighbours[sender].plan = arrived;
+        }
+    }
+
+    fn is_lost(&self, share: f64, tick: u64, sender: usize, what: u64) -> bool {
+        if share == 0.0 {
+            return false;
+        }
+        let pair = (sender as u64) << 32 | (self.listener as u64) << 1 | what;
+        random::unit(&mut random::stream(self.seed, Use::Loss, pair, tick)) < share
+    }
+}
+
+/// The position that `robot` measures at `tick`, m: `position` plus a draw from a disc of radius `noise`.
+pub fn measured(position: Position, noise: f64, seed: u64, robot: usize, tick: u64) -> Position {
+    if noise == 0.0 {
+        return position;
+    }
+    let mut generator = random::stream(seed, Use::Noise, robot as u64, tick);
+    let radius = noise * random::unit(&mut generator).sqrt();
+    let (sin, cos) = (std::f64::consts::TAU * random::unit(&mut generator)).sin_cos();
+    position + Position::new(cos, sin) * radius
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn hearing(disturbance: Disturbance) -> Hearing {
+        let scenario = Scenario::resolve(Some("two_setpoint"), None).unwrap();
+        Hearing::new(0, &scenario, &disturbance, 1)
+    }
+
+    fn plan(x: f64) -> Prediction {
+        Prediction::from_states(&[Position::new(x, 0.0), Position::new(x + 1.0, 0.0)], Position::zeros())
+    }
+
+    const CALM: Disturbance = Disturbance { noise: 0.0, plan_delay: 0, plan_loss: 0.0, position_loss: 0.0 };
+
+    #[test]
+    fn late_plans_come_in_order_and_positions_at_once() {
+        let mut hearing = hearing(Disturbance { plan_delay: 2, ..CALM });
+        for tick in 0..5 {
+            hearing.hear(tick, 1, &plan(tick as f64));
+            assert_eq!(hearing.neighbours()[1].present, Some((tick + 1, Position::new(tick as f64 + 1.0, 0.0))));
+            let heard = hearing.neighbours()[1].plan.as_ref().map(|(at, _)| *at);
+            assert_eq!(heard, tick.checked_sub(2));
+        }
+    }
+
+    #[test]
+    fn the_stated_share_is_lost_and_own_messages_never() {
+        let mut hearing = hearing(Disturbance { position_loss: 0.3, ..CALM });
+        let mut heard = 0;
+        for tick in 0..2000 {
+            hearing.hear(tick, 1, &plan(0.0));
+            heard += u64::from(hearing.neighbours()[1].present.unwrap().0 == tick + 1);
+            hearing.hear(tick, 0, &plan(0.0));
+            assert_eq!(hearing.neighbours()[0].present.unwrap().0, tick + 1);
+        }
+        assert!((1300..1500).contains(&heard), "{heard} of 2000");
+    }
+
+    #[test]
+    fn measuring_errors_stay_within_their_bound() {
+        let errors: Vec<f64> = (0..500).map(|tick| measured(Position::zeros(), 0.02, 3, 1, tick).norm()).collect();
+        assert!(errors.iter().all(|&error| error <= 0.02) && errors.iter().any(|&error| error > 0.015));
+        assert_eq!(measured(Position::new(1.0, 2.0), 0.0, 3, 1, 0), Position::new(1.0, 2.0));
+    }
+}

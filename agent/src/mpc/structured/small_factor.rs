@@ -1,0 +1,73 @@
+//! L D L' of the small matrix of the active rows, grown row by row; a dependent row is refused.
+
+/// Most rows in one active set; a QP that needs more is left to the next solver.
+pub(super) const MAX_ACTIVE: usize = 64;
+
+/// The factor; `MAX_ACTIVE^2` numbers, allocated once.
+#[derive(Clone, Debug)]
+pub(super) struct SmallFactor {
+    size: usize,
+    /// L below the diagonal, D on it; row-major with stride MAX_ACTIVE.
+    entries: Vec<f64>,
+}
+
+impl SmallFactor {
+    pub(super) fn new() -> Self {
+        Self { size: 0, entries: vec![0.0; MAX_ACTIVE * MAX_ACTIVE] }
+    }
+
+    pub(super) fn clear(&mut self) {
+        self.size = 0;
+    }
+
+    /// The next row to fill: entries against the present rows, then the diagonal.
+    pub(super) fn next_row(&mut self) -> &mut [f64] {
+        let start = self.size * MAX_ACTIVE;
+        &mut self.entries[start..=start + self.size]
+    }
+
+    /// Takes the row filled into [`Self::next_row`]. `false`: its pivot is not above `smallest`, the
+    /// row depends on the others and stays out.
+    pub(super) fn push(&mut self, smallest: f64) -> bool {
+        let size = self.size;
+        let (above, row) = self.entries.split_at_mut(size * MAX_ACTIVE);
+        // Row of L D first (forward substitution), then divided by D while the pivot is formed.
+        for i in 1..size {
+            let earlier = &above[i * MAX_ACTIVE..];
+            let mut sum = row[i];
+            for k in 0..i {
+                sum -= row[k] * earlier[k];
+            }
+            row[i] = sum;
+        }
+        let mut pivot = row[size];
+        for i in 0..size {
+            let scaled = row[i] / above[i * MAX_ACTIVE + i];
+            pivot -= row[i] * scaled;
+            row[i] = scaled;
+        }
+        row[size] = pivot;
+        let independent = pivot > smallest;
+        self.size += usize::from(independent);
+        independent
+    }
+
+    /// Replaces `right` by the solution.
+    pub(super) fn solve(&self, right: &mut [f64]) {
+        for i in 1..self.size {
+            let row = &self.entries[i * MAX_ACTIVE..];
+            for k in 0..i {
+                right[i] -= row[k] * right[k];
+            }
+        }
+        for (i, value) in right[..self.size].iter_mut().enumerate() {
+            *value /= self.entries[i * MAX_ACTIVE + i];
+        }
+        for i in (1..self.size).rev() {
+            let row = &self.entries[i * MAX_ACTIVE..];
+            for k in 0..i {
+                right[k] -= row[k] * right[i];
+            }
+        }
+    }
+}

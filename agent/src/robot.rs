@@ -1,0 +1,70 @@
+//! One robot from measuring to moving: the same in a team and in an agent process.
+
+use crate::baseline::orca::OrcaController;
+use crate::controller::{Controller, View};
+use crate::hearing::{Hearing, measured};
+use crate::layout::Layout;
+use crate::vodca_controller::VodcaController;
+use shared::Position;
+use shared::horizon::Horizon;
+use shared::params::{ControllerKind, Params};
+use shared::scenario::Scenario;
+use shared::step::Step;
+use std::time::Instant;
+
+/// A simulated body and the controller that drives it.
+pub struct Robot {
+    robot: usize,
+    seed: u64,
+    sample_time: f64,
+    noise: f64,
+    position: Position,
+    controller: Box<dyn Controller>,
+}
+
+impl Robot {
+    /// Robot number `robot` at its start. `seed` feeds the measuring noise.
+    pub fn new(robot: usize, scenario: &Scenario, params: &Params, seed: u64) -> Self {
+        let layout = Layout::of(scenario, params.model.min_separation);
+        let controller: Box<dyn Controller> = match params.controller.kind {
+            ControllerKind::Vodca => Box::new(VodcaController::new(robot, params, &layout)),
+            ControllerKind::Orca => Box::new(OrcaController::new(robot, params, &layout)),
+        };
+        Self {
+            robot,
+            seed,
+            sample_time: params.model.sample_time,
+            noise: params.disturbance.noise,
+            position: scenario.robots[robot].start,
+            controller,
+        }
+    }
+
+    /// Where the robot is, m.
+    pub fn position(&self) -> Position {
+        self.position
+    }
+
+    /// Measures, decides and moves: one tick. `hearing` holds the others' plans of tick k - 1.
+    pub fn step(&mut self, tick: u64, horizon: Horizon, hearing: &Hearing) -> Step {
+        let started = Instant::now();
+        let seen = measured(self.position, self.noise, self.seed, self.robot, tick);
+        let view = View { tick, horizon, position: seen, neighbours: hearing.neighbours() };
+        let decision = self.controller.tick(&view);
+        let solve_ns = started.elapsed().as_nanos() as u64;
+        let position = self.position;
+        self.position = position + decision.input * self.sample_time;
+        Step {
+            position,
+            input: decision.input,
+            next_position: self.position,
+            horizon,
+            rows: decision.rows,
+            level: decision.level,
+            status: decision.status,
+            shielded: decision.shielded,
+            plan: decision.plan,
+            solve_ns,
+        }
+    }
+}
