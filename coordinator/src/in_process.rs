@@ -17,7 +17,7 @@ pub fn run_team<E>(
     mut on_tick: impl FnMut(u64, &[Step]) -> Result<(), E>,
 ) -> Result<RunMetrics, E> {
     let mut metrics = RunMetrics::new(scenario, params);
-    let mut team = Team::new(scenario, params);
+    let mut team = Team::new(scenario, params, scenario.seed);
     for tick in 0..scenario.max_ticks {
         let steps = team.step(|robot| horizon(robot, tick));
         metrics.observe(tick, steps);

@@ -150,3 +150,72 @@ fn first_difference(recorded: &str, repeated: &str, robots: usize) -> Option<Dif
     }
     None
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::record::samples;
+    use std::fs;
+
+    fn recorded() -> tempfile::TempDir {
+        let place = tempfile::tempdir().unwrap();
+        samples::record_run(place.path(), "ring:5", &Params::safe());
+        place
+    }
+
+    #[test]
+    fn a_run_repeats_to_the_last_byte() {
+        let repetition = replay(recorded().path()).unwrap();
+        assert_eq!((repetition.difference, repetition.whole), (None, true));
+        assert!(repetition.ticks > 20);
+    }
+
+    #[test]
+    fn a_changed_byte_is_found_with_its_tick_and_robot() {
+        let place = recorded();
+        let path = place.path().join(trajectory::FILE);
+        let original = fs::read(&path).unwrap();
+        // Bytes all over the file; never the header, which has no tick.
+        for at in (trajectory::HEADER.len() + 1..original.len()).step_by(original.len() / 50) {
+            let mut bytes = original.clone();
+            bytes[at] = if bytes[at] == b'7' { b'8' } else { b'7' };
+            fs::write(&path, &bytes).unwrap();
+            let line = original[..at].iter().filter(|&&byte| byte == b'\n').count() + 1;
+            let difference = replay(place.path()).unwrap().difference.unwrap();
+            assert_eq!(difference.line, line);
+            assert_eq!((difference.tick, difference.robot), (((line - 2) / 5) as u64, (line - 2) % 5));
+        }
+    }
+
+    #[test]
+    fn missing_and_added_lines_are_found() {
+        let place = recorded();
+        let path = place.path().join(trajectory::FILE);
+        let original = fs::read_to_string(&path).unwrap();
+        fs::write(&path, format!("{original}x")).unwrap();
+        assert!(replay(place.path()).unwrap().difference.is_some());
+        let lines: Vec<&str> = original.split_inclusive('\n').collect();
+        fs::write(&path, lines[..lines.len() - 1].concat()).unwrap();
+        assert!(replay(place.path()).unwrap().difference.is_some());
+    }
+
+    #[test]
+    fn a_cut_record_is_repeated_as_far_as_it_goes() {
+        let place = recorded();
+        let (path, script) = (place.path().join(trajectory::FILE), place.path().join(horizons::FILE));
+        let lines = |path: &Path, count: usize| -> String {
+            fs::read_to_string(path).unwrap().split_inclusive('\n').take(count).collect()
+        };
+        let (rows, horizons) = (lines(&path, 1 + 10 * 5), lines(&script, 1 + 10));
+        fs::write(&path, rows).unwrap();
+        fs::write(&script, horizons).unwrap();
+        assert_eq!(replay(place.path()).unwrap(), Repetition { ticks: 10, whole: false, difference: None });
+    }
+
+    #[test]
+    fn a_folder_without_a_run_says_which_file_is_missing() {
+        let place = tempfile::tempdir().unwrap();
+        let message = replay(place.path()).unwrap_err().to_string();
+        assert!(message.contains("scenario.toml") && message.contains("recorded run"), "{message}");
+    }
+}

@@ -46,3 +46,33 @@ pub(crate) fn steps(robots: usize, tick: u64) -> Vec<Step> {
     };
     (0..robots).map(step).collect()
 }
+
+/// A real run of a team in this process, recorded in `folder`, with horizons from `random:3`.
+pub(crate) fn record_run(folder: &std::path::Path, scenario: &str, params: &shared::params::Params) {
+    use crate::record::about::{Machine, Versions};
+    use crate::record::{About, RunFolder};
+    use std::time::Duration;
+    let mut scenario = Scenario::resolve(Some(scenario), None).unwrap();
+    scenario.max_ticks = 120;
+    let about = About {
+        version: 1,
+        scenario: scenario.name.clone(),
+        robots: scenario.robots.len(),
+        profile: "sample".into(),
+        horizon: "random:3".into(),
+        seed: scenario.seed,
+        exchange: "none".into(),
+        real_time: false,
+        command: vec![],
+        versions: Versions::here(),
+        machine: Machine::here(),
+    };
+    let folder = RunFolder::at(folder).unwrap();
+    let mut session = crate::session::Session::start(folder, &scenario, params, about).unwrap();
+    let horizon = |robot, tick| Horizon::random(3, robot, tick);
+    crate::in_process::run_team(&scenario, params, horizon, |tick, steps| {
+        session.tick(tick, steps, Duration::from_micros(5)).map(|_| ())
+    })
+    .unwrap();
+    session.finish(crate::summary::End::OutOfTicks).unwrap();
+}

@@ -3,18 +3,19 @@
 use super::table::Table;
 use shared::params::Params;
 use shared::scenario::Scenario;
+use std::collections::BTreeSet;
 
 /// What a trajectory shows.
 #[derive(Clone, Debug)]
 pub(super) struct Course {
     /// Smallest separation of the run, m, radii beyond min_separation / 2 taken off; infinite alone.
     pub(super) min_separation: f64,
-    /// Where it was: tick, robot, and the name of what was near.
-    pub(super) nearest: (usize, usize, String),
+    /// Where it was: tick, robot, and the number of what was near (robots first, then obstacles).
+    pub(super) nearest: (usize, usize, usize),
     /// Ticks in which someone was nearer than min_separation (by more than rounding).
     pub(super) ticks_below: u64,
-    /// Ticks in which someone collided.
-    pub(super) collisions: u64,
+    /// Pairs that collided at any time.
+    pub(super) pairs_collided: usize,
     /// Length of each robot's path, m.
     pub(super) path: Vec<f64>,
     /// What is left to each set-point, m.
@@ -30,19 +31,24 @@ impl Course {
         let extra = |radius: Option<f64>| radius.map_or(0.0, |radius| radius - half);
         let mut course = Self {
             min_separation: f64::INFINITY,
-            nearest: (0, 0, String::new()),
+            nearest: (0, 0, 0),
             ticks_below: 0,
-            collisions: 0,
+            pairs_collided: 0,
             path: vec![0.0; robots],
             distances: Vec::new(),
         };
+        // Hazards are counted robots first, then obstacles.
+        let mut collided = BTreeSet::new();
         for tick in 0..table.ticks.len() {
             let mut least = f64::INFINITY;
-            let mut note = |near: f64, robot: usize, other: &dyn Fn() -> String| {
+            let mut note = |near: f64, robot: usize, hazard: usize| {
                 least = least.min(near);
+                if near < params.episode.collision_factor * limit {
+                    collided.insert((robot, hazard));
+                }
                 if near < course.min_separation {
                     course.min_separation = near;
-                    course.nearest = (tick, robot, other());
+                    course.nearest = (tick, robot, hazard);
                 }
             };
             for i in 0..robots {
@@ -52,17 +58,17 @@ impl Course {
                 for j in i + 1..robots {
                     let (other_from, other_to) = (table.position(tick, j), table.position(tick + 1, j));
                     let near = nearest(minus(from, other_from), minus(to, other_to));
-                    note(near - own - extra(scenario.robots[j].radius), i, &|| format!("robot {j}"));
+                    note(near - own - extra(scenario.robots[j].radius), i, j);
                 }
                 for (l, obstacle) in scenario.obstacles.iter().enumerate() {
                     let centre = [obstacle.position.x, obstacle.position.y];
                     let near = nearest(minus(from, centre), minus(to, centre));
-                    note(near - own - extra(obstacle.radius), i, &|| format!("obstacle {l}"));
+                    note(near - own - extra(obstacle.radius), i, robots + l);
                 }
             }
             course.ticks_below += u64::from(least < limit - super::TOUCH);
-            course.collisions += u64::from(least < params.episode.collision_factor * limit);
         }
+        course.pairs_collided = collided.len();
         course.distances = (0..robots)
             .map(|i| {
                 let [x, y] = table.position(table.ticks.len(), i);

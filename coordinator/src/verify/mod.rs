@@ -6,6 +6,8 @@
 
 mod geometry;
 mod table;
+#[cfg(test)]
+mod tests;
 
 use geometry::Course;
 use serde_json::Value;
@@ -214,8 +216,11 @@ fn guarantee(course: &Course, scenario: &Scenario, params: &Params) -> Option<Fi
     let kept = params.model.min_separation.min(params.cell.separation);
     let promised = params.cell.enabled && !scenario.allow_close_start;
     (promised && course.min_separation < kept - TOUCH).then(|| {
-        let (tick, robot, ref other) = course.nearest;
-        let what = format!("separation from {other}");
+        let (tick, robot, hazard) = course.nearest;
+        let what = match hazard.checked_sub(scenario.robots.len()) {
+            None => format!("separation from robot {hazard}"),
+            Some(obstacle) => format!("separation from obstacle {obstacle}"),
+        };
         Finding::new(Place::at(tick, robot), &what, &format!("{} m", course.min_separation), &format!("at least {kept} m"))
     })
 }
@@ -234,16 +239,20 @@ fn claims(table: &Table, course: &Course, params: &Params, summary: &Value) -> V
         }
     };
     let arrived = course.distances.iter().all(|&left| left < params.episode.arrival_tolerance);
-    let success = arrived && course.collisions == 0;
+    let success = arrived && course.pairs_collided == 0;
     compare("success", &summary["success"], success.into());
     compare("ticks", &summary["ticks"], table.ticks.len().into());
     compare("path_cost", &summary["path_cost"], course.path.iter().sum::<f64>().into());
     compare("min_separation", &summary["min_separation"], finite(course.min_separation));
     compare("ticks_below_min_separation", &summary["ticks_below_min_separation"], course.ticks_below.into());
-    let activations = table.ticks.iter().flatten().filter(|row| row.rows > 0).count();
+    compare("collisions", &summary["collisions"], course.pairs_collided.into());
+    let activations: u64 = table.ticks.iter().flatten().map(|row| row.rows).sum();
     compare("activations", &summary["activations"], activations.into());
     for (level, count) in table.count(|row| &row.level) {
         compare(&format!("solver_levels.{level}"), &summary["solver_levels"][level], count.into());
+    }
+    for (status, count) in table.count(|row| &row.status) {
+        compare(&format!("statuses.{status}"), &summary["statuses"][status], count.into());
     }
     findings
 }
