@@ -3,15 +3,19 @@
 //! Offline commands (sweep, compare, golden, replay) run whole teams in this process.
 
 pub mod cli;
+pub mod clock;
 pub mod commands;
 pub mod exit;
 pub mod guarantee;
 pub mod in_process;
 pub mod latency;
+pub mod launch;
 pub mod parallel;
 pub mod progress;
 pub mod record;
 pub mod report;
+pub mod roster;
+pub mod run;
 pub mod session;
 pub mod summary;
 pub mod text_table;

@@ -1,5 +1,169 @@
-use crate::exit::{Ending, Outcome};
+//! `run`: a team with one process per robot.
+
+use crate::exit::{self, Ending, Failure};
+use crate::launch::Agents;
+use crate::record::about::{Machine, Versions};
+use crate::record::{About, RecordError, RunFolder};
+use crate::report::report;
+use crate::run::{Options, Outcome, Team, Tick, Verdict};
+use crate::session::Session;
+use crate::summary::End;
+use shared::exchange::Kind;
+use shared::horizon_source::{HorizonSource, HorizonSpec};
+use shared::params::{Params, Profile};
+use shared::scenario::{Scenario, set_up};
+use shared::stop::StopFlag;
+use std::path::PathBuf;
+use std::time::Duration;
+
+/// Arguments of `run`.
 #[derive(Debug, clap::Args)]
-#[command(after_help = "Example: ./run.sh")]
-pub struct Args {}
-pub fn run(_: Args) -> Ending { Ok(Outcome::Done) }
+#[command(after_help = "\
+Examples:
+  ./run.sh 14                                      fourteen robots change sides around three obstacles
+  ./run.sh 4 --scenario four_gate --horizon random:3
+  ./run.sh 2 --profile paper --horizon fixed:9,40
+  ./run.sh 8 --scenario my_layout.toml --set vodca.rows=each --out my_run
+  ./run.sh 14 --horizon script:runs/20260131-120000-ex14_d-14/horizons.csv
+Without --scenario: 2 two_setpoint, 4 four_gate, 14 ex14_d, otherwise a ring.
+Exit codes: 0 arrived, or asked to stop; 1 not arrived or collided; 2 wrong usage; 3 a robot's process was lost.")]
+pub struct Args {
+    /// Number of robots
+    #[arg(value_name = "N", required_unless_present = "scenario")]
+    robots: Option<usize>,
+    /// Scenario: file, built-in name (`scenario list`) or family (ring:16, box:16:3:7)
+    #[arg(long, value_name = "FILE|NAME")]
+    scenario: Option<String>,
+    /// Where horizons come from: fixed:20, fixed:9,40 (one per robot), random:SEED, script:FILE
+    #[arg(long, value_name = "SPEC", default_value = "fixed:20")]
+    horizon: HorizonSpec,
+    /// Parameter set: safe or paper
+    #[arg(long, value_name = "NAME", default_value = "safe")]
+    profile: Profile,
+    /// How plans are exchanged; left out: peer up to 20 robots, relay above
+    #[arg(long)]
+    exchange: Option<Exchange>,
+    /// Seed of everything random, instead of the scenario's
+    #[arg(long)]
+    seed: Option<u64>,
+    /// Folder of the run, new or empty; left out: runs/<UTC time>-<scenario>-<N>
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// One tick per sample time instead of as fast as everybody answers
+    #[arg(long)]
+    real_time: bool,
+    /// Last tick, instead of the scenario's
+    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+    max_ticks: Option<u64>,
+    /// Change a parameter (repeatable), e.g. vodca.rows=each; `params` lists them
+    #[arg(long, value_name = "KEY=VALUE")]
+    set: Vec<String>,
+    /// Print the robots' commands and wait for them to be started by hand
+    #[arg(long)]
+    by_hand: bool,
+}
+
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+enum Exchange {
+    /// Every robot to every robot
+    Peer,
+    /// Through the coordinator
+    Relay,
+}
+
+/// Runs the team and reports.
+pub fn run(args: Args) -> Ending {
+    let stop = StopFlag::install().map_err(Failure::broken)?;
+    let (mut scenario, params) =
+        set_up(args.scenario.as_deref(), args.robots, args.profile, &args.set).map_err(Failure::usage)?;
+    scenario.seed = args.seed.unwrap_or(scenario.seed);
+    scenario.max_ticks = args.max_ticks.unwrap_or(scenario.max_ticks);
+    // The robots ask their own sources; whether there are horizons for all is said before any starts.
+    HorizonSource::new(&args.horizon, scenario.robots.len(), scenario.seed, params.horizon.jitter)
+        .map_err(Failure::usage)?;
+    let folder =
+        RunFolder::create(args.out.as_deref(), &scenario.name, scenario.robots.len()).map_err(Failure::usage)?;
+    let options = options(&args, &scenario, &folder)?;
+    let session = Session::start(folder, &scenario, &params, about(&args, &scenario, options.exchange))
+        .map_err(Failure::broken)?;
+    play(session, &scenario, &params, options, &stop)
+}
+
+fn options(args: &Args, scenario: &Scenario, folder: &RunFolder) -> Result<Options, Failure> {
+    let mut options = Options::new(folder.path(), scenario).map_err(Failure::broken)?;
+    options.horizons = args.horizon.to_string();
+    options.real_time = args.real_time;
+    if let Some(exchange) = args.exchange {
+        options.exchange = match exchange {
+            Exchange::Peer => Kind::Peer,
+            Exchange::Relay => Kind::Relay,
+        };
+    }
+    if args.by_hand {
+        options.agents = Agents::ByHand;
+        options.start_patience = Duration::from_secs(600);
+    }
+    Ok(options)
+}
+
+fn about(args: &Args, scenario: &Scenario, exchange: Kind) -> About {
+    About {
+        version: 1,
+        scenario: scenario.name.clone(),
+        robots: scenario.robots.len(),
+        profile: args.profile.to_string(),
+        horizon: args.horizon.to_string(),
+        seed: scenario.seed,
+        exchange: match exchange {
+            Kind::Peer => "peer".into(),
+            Kind::Relay => "relay".into(),
+        },
+        real_time: args.real_time,
+        command: std::env::args().collect(),
+        versions: Versions::here(),
+        machine: Machine::here(),
+    }
+}
+
+/// Starts the processes, hands their ticks to the session and says how it ended.
+fn play(mut session: Session, scenario: &Scenario, params: &Params, options: Options, stop: &StopFlag) -> Ending {
+    let team = Team::launch(scenario, params, options, stop).map_err(Failure::broken)?;
+    let mut unrecorded: Option<RecordError> = None;
+    let mut observer = |tick: &Tick<'_>| {
+        let duration = Duration::from_nanos(tick.collected.saturating_sub(tick.announced));
+        match session.tick(tick.tick, tick.steps, duration) {
+            Ok(false) => Verdict::Continue,
+            Ok(true) => Verdict::Arrived,
+            Err(error) => {
+                unrecorded = Some(error);
+                Verdict::Abandon
+            }
+        }
+    };
+    let ended = team.run(stop, &mut observer).map_err(Failure::broken)?;
+    if let Some(error) = unrecorded {
+        return Err(Failure::broken(error));
+    }
+    let end = match &ended.outcome {
+        Outcome::Completed => End::Arrived,
+        Outcome::TimedOut => End::OutOfTicks,
+        Outcome::Stopped => End::Interrupted,
+        Outcome::PeerLost(_) | Outcome::Abandoned => End::PeerLost,
+    };
+    let (summary, folder) = session.finish(end).map_err(Failure::broken)?;
+    print!("{}", report(&summary, &folder));
+    if ended.overruns.count > 0 {
+        println!(
+            "{:<16}{} ticks began late, the worst by {:.1} ms",
+            "real time",
+            ended.overruns.count,
+            ended.overruns.worst_ns as f64 / 1e6
+        );
+    }
+    match ended.outcome {
+        Outcome::PeerLost(lost) => Err(Failure::peer_lost(lost)),
+        Outcome::Stopped => Ok(exit::Outcome::Done),
+        _ if summary.run.success => Ok(exit::Outcome::Done),
+        _ => Ok(exit::Outcome::Failed),
+    }
+}
