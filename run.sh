@@ -1,0 +1,35 @@
+#!/bin/sh
+# The front door: builds what a command needs, then hands over to the program.
+#   ./run.sh 14              fourteen robots, one process each
+#   ./run.sh test            all tests
+#   ./run.sh --help          everything else
+set -eu
+root=$(cd "$(dirname "$0")" && pwd)
+target=${CARGO_TARGET_DIR:-$root/target}
+
+command -v cargo >/dev/null || { echo "error: cargo is missing; install it: apt-get install rustup && rustup default stable" >&2; exit 2; }
+command -v cc >/dev/null || { echo "error: a C compiler (cc) is missing; install it: apt-get install build-essential" >&2; exit 2; }
+ulimit -n "$(ulimit -H -n)" 2>/dev/null || true # every robot's process and service takes a few files
+
+cargo_release() { # cargo_release build|test ARGUMENTS
+    action=$1; shift
+    cargo "$action" --release --locked --manifest-path "$root/Cargo.toml" "$@"
+}
+build() { # build PACKAGE...: silent when there is little to do
+    quiet=-q
+    [ -x "$target/release/coordinator" ] || { quiet=; echo "building for the first time, some minutes ..." >&2; }
+    packages=
+    for package; do packages="$packages -p $package"; done
+    # shellcheck disable=SC2086 # words on purpose
+    cargo_release build $quiet --bins $packages >&2
+}
+
+case ${1-} in
+test) shift; cargo_release test --workspace "$@"; exit ;;
+[0-9]* | --scenario*) set -- run "$@" ;;
+esac
+case ${1-} in
+run) build coordinator agent ;;
+*) build coordinator ;;
+esac
+exec "$target/release/coordinator" "$@"
