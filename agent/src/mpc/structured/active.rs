@@ -64,8 +64,9 @@ impl ActiveSet {
         self.order.extend_from_slice(&other.order);
     }
 
-    /// Adds every constraint that the solution violates; returns the most violated one.
-    pub(super) fn add_violated(&mut self, problem: &Problem<'_>, solution: &Equality) -> Option<Constraint> {
+    /// Adds every constraint that the solution violates; returns the most violated one
+    /// and by how much, m/s (rows: metres per sample time).
+    pub(super) fn add_violated(&mut self, problem: &Problem<'_>, solution: &Equality) -> Option<(Constraint, f64)> {
         let mut worst = None;
         let mut most = 0.0;
         for l in 0..problem.horizon.steps() {
@@ -93,7 +94,7 @@ impl ActiveSet {
                 }
             }
         }
-        worst
+        worst.map(|constraint| (constraint, most))
     }
 
     /// Relaxes every constraint whose multiplier has the wrong sign, and moves soft rows to the

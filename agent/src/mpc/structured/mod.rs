@@ -29,8 +29,15 @@ const ROW_CAPACITY: usize = 512;
 const MAX_ITERATIONS: u32 = 200;
 /// Relaxations within a block step.
 const MAX_RELAXATIONS: u32 = 8;
+/// After the n-th block step that fails in a row, 2^(n - 1) single steps follow; n up to this.
+const MAX_FAILURES: u32 = 4;
 /// Largest KKT residual of an answer, m/s and m.
 const ACCEPTED_RESIDUAL: f64 = 1e-9;
+/// Violations up to this, m/s, are not worth a single step: what block steps leave of them is
+/// rounding, and the KKT check has the last word.
+const SETTLED: f64 = 1e-10;
+/// A single step that loses this share of the cost has lost its numbers.
+const LOST_COST: f64 = 1e-6;
 /// Share of the cost that a block step may lose to rounding.
 const COST_ROUNDING: f64 = 1e-12;
 
@@ -86,24 +93,32 @@ impl Structured {
             }
         }
         let mut cost = self.equality.cost(problem, &self.accepted);
+        let (mut failures, mut singles) = (0u32, 0u32);
         loop {
             self.trial.copy_from(&self.accepted);
-            let Some(worst) = self.trial.add_violated(problem, &self.equality) else { return Ok(()) };
-            if let Some(next) = self.block_step(problem, cost, iterations)? {
-                std::mem::swap(&mut self.accepted, &mut self.trial);
-                self.stats[0] += 1;
-                cost = next;
-                continue;
+            let Some((worst, excess)) = self.trial.add_violated(problem, &self.equality) else { return Ok(()) };
+            if singles == 0 {
+                if let Some(next) = self.block_step(problem, cost, iterations)? {
+                    std::mem::swap(&mut self.accepted, &mut self.trial);
+                    self.stats[0] += 1;
+                    cost = next;
+                    failures = 0;
+                    continue;
+                }
+                failures = (failures + 1).min(MAX_FAILURES);
+                singles = 1 << (failures - 1);
+                *iterations += 1;
+                self.equality.solve(problem, &mut self.accepted).map_err(|_| too_many(iterations))?;
             }
+            singles -= 1;
             self.stats[1] += 1;
-            if std::env::var("TRACE").is_ok() { eprintln!("it {iterations} cost {cost} worst {worst:?} trial {:?} accepted {:?} prices {:?} b {:?}", self.trial.rows, self.accepted.rows, self.equality.prices, &self.accepted.bounds[..1]); }
-            *iterations += 1;
-            self.equality.solve(problem, &mut self.accepted).map_err(|_| too_many(iterations))?;
+            if excess <= SETTLED {
+                return Ok(());
+            }
             let outcome = self
                 .single_step
                 .run(problem, &mut self.equality, &mut self.accepted, worst, iterations, MAX_ITERATIONS)
                 .map_err(|_| too_many(iterations))?;
-            if std::env::var("TRACE").is_ok() { eprintln!("  outcome {outcome:?} {:?} b {:?} prices {:?}", self.accepted.rows, &self.accepted.bounds[..1], self.equality.prices); }
             match outcome {
                 Outcome::Added => {}
                 Outcome::Infeasible => return Err(SolveError::Infeasible),
@@ -111,7 +126,11 @@ impl Structured {
             }
             self.equality.solve(problem, &mut self.accepted).map_err(|_| too_many(iterations))?;
             *iterations += 1;
-            cost = self.equality.cost(problem, &self.accepted);
+            let next = self.equality.cost(problem, &self.accepted);
+            if next < cost - LOST_COST * cost.abs() {
+                return Err(too_many(iterations));
+            }
+            cost = next;
         }
     }
 

@@ -52,6 +52,8 @@ pub(super) struct SingleStep {
     prices: Vec<f64>,
     /// Change of the members' multipliers per unit of the added one, negated.
     rates: Vec<f64>,
+    /// How much a unit of the added multiplier opens each member.
+    couplings: Vec<f64>,
     source: Track,
     drift: Track,
 }
@@ -65,6 +67,7 @@ impl SingleStep {
             gradient: zero,
             prices: Vec::with_capacity(row_capacity),
             rates: Vec::with_capacity(super::small_factor::MAX_ACTIVE),
+            couplings: Vec::with_capacity(super::small_factor::MAX_ACTIVE),
             source: zero,
             drift: zero,
         }
@@ -97,7 +100,7 @@ impl SingleStep {
             let compliance = if violated { 1.0 / problem.slack.quadratic } else { 0.0 };
             let missing = self.missing(problem, constraint)
                 - if violated { (price - problem.slack.linear) * compliance } else { 0.0 };
-            let independent = opening > DEPENDENT * self.scale(problem, constraint);
+            let independent = opening > DEPENDENT * self.magnitude(problem, constraint);
             let reach = if independent || violated { missing.max(0.0) / (opening + compliance) } else { f64::INFINITY };
             let (length, event) = self.next_event(problem, equality, set, constraint, price, violated, reach);
             if !length.is_finite() {
@@ -145,6 +148,8 @@ impl SingleStep {
                 Constraint::Row(index) => super::equality::coupling(&equality.chain, problem, index, member),
             });
         }
+        self.couplings.clear();
+        self.couplings.extend_from_slice(&self.rates);
         equality.factor.solve(&mut self.rates);
         for (&member, rate) in equality.members.iter().zip(&self.rates) {
             let row = &problem.rows[member];
@@ -180,12 +185,14 @@ impl SingleStep {
         }
     }
 
-    /// The opening that the constraint would have alone.
-    fn scale(&self, problem: &Problem<'_>, constraint: Constraint) -> f64 {
-        match constraint {
+    /// Sum of what the opening is the difference of: its rounding is a small share of this.
+    fn magnitude(&self, problem: &Problem<'_>, constraint: Constraint) -> f64 {
+        let alone = match constraint {
             Constraint::Bound { .. } => 1.0 / (2.0 * problem.input_weight),
             Constraint::Row(index) => freest(problem, problem.rows[index].step),
-        }
+        };
+        let cancelled = self.couplings.iter().zip(&self.rates).map(|(coupling, rate)| (coupling * rate).abs());
+        cancelled.fold(alone, |sum, term| sum + term)
     }
 
     #[allow(clippy::too_many_arguments)]
