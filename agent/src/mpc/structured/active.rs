@@ -1,6 +1,6 @@
 //! Which bounds and rows are active, and what a solution says about it.
 
-use super::super::problem::Problem;
+use super::super::problem::{Plan, Problem};
 use super::chain::Bounds;
 use super::equality::Equality;
 use shared::horizon::MAX_HORIZON;
@@ -44,7 +44,11 @@ pub(super) enum Constraint {
 
 impl ActiveSet {
     pub(super) fn new(row_capacity: usize) -> Self {
-        Self { bounds: [[0; 2]; MAX_HORIZON], rows: Vec::with_capacity(row_capacity), order: Vec::with_capacity(row_capacity) }
+        Self {
+            bounds: [[0; 2]; MAX_HORIZON],
+            rows: Vec::with_capacity(row_capacity),
+            order: Vec::with_capacity(row_capacity),
+        }
     }
 
     /// Nothing active, for the rows of `problem`.
@@ -62,6 +66,17 @@ impl ActiveSet {
         self.rows.extend_from_slice(&other.rows);
         self.order.clear();
         self.order.extend_from_slice(&other.order);
+    }
+
+    /// Adds the bounds that the inputs of `plan` touch.
+    pub(super) fn touch_bounds(&mut self, problem: &Problem<'_>, plan: &Plan) {
+        for (bounds, input) in self.bounds.iter_mut().zip(&plan.inputs[..problem.horizon.steps()]) {
+            for axis in 0..2 {
+                if input[axis].abs() >= problem.max_speed {
+                    bounds[axis] = if input[axis] > 0.0 { 1 } else { -1 };
+                }
+            }
+        }
     }
 
     /// Adds every constraint that the solution violates; returns the most violated one
