@@ -71,15 +71,13 @@ fn experiment() {
                 let p = |q: f64| if its.is_empty() { 0 } else { its[((its.len() - 1) as f64 * q) as usize] };
                 let t = |q: f64| if times.is_empty() { 0.0 } else { times[((times.len() - 1) as f64 * q) as usize] };
                 println!(
-                    "{family:?} N={n} m={m}: infeasible {infeasible} gave up {gave} differ {differ} worst du {worst:.1e} its p50 {} p90 {} max {}; us p50 {:.2} p90 {:.2} max {:.2}; blocks {} singles {}",
+                    "{family:?} N={n} m={m}: infeasible {infeasible} gave up {gave} differ {differ} worst du {worst:.1e} its p50 {} p90 {} max {}; us p50 {:.2} p90 {:.2} max {:.2}",
                     p(0.5),
                     p(0.9),
                     p(1.0),
                     t(0.5),
                     t(0.9),
-                    t(1.0),
-                    solver.stats[0],
-                    solver.stats[1]
+                    t(1.0)
                 );
             }
         }

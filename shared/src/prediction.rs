@@ -16,7 +16,7 @@ pub struct Prediction {
 }
 
 impl Prediction {
-    /// Rolls the model x[l+1] = x[l] + h u[l] out from `position` over all `inputs` (1..=49 of them,
+    /// Rolls the model `x[l+1] = x[l] + h u[l]` out from `position` over all `inputs` (1..=49 of them,
     /// more are ignored).
     pub fn roll_out(position: Position, set_point: Position, sample_time: f64, inputs: &[Input]) -> Self {
         let horizon = Horizon::saturating(inputs.len() as i64);

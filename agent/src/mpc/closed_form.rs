@@ -50,7 +50,7 @@ impl ClosedForm {
         let steps = problem.horizon.steps();
         let (h, bound) = (problem.sample_time, problem.max_speed);
         let mut state = problem.position;
-        for l in 0..steps {
+        for (l, next) in states.iter_mut().enumerate().take(steps) {
             let wish = match problem.target.kind {
                 TargetKind::SetPoint => (problem.target.states[l] - state) * self.gains[steps - 1 - l],
                 TargetKind::Feasible => problem.target.inputs[l],
@@ -58,7 +58,7 @@ impl ClosedForm {
             let input = Input::new(wish.x.clamp(-bound, bound), wish.y.clamp(-bound, bound));
             state += input * h;
             plan.inputs[l] = input;
-            states[l] = state;
+            *next = state;
         }
         plan.inputs[steps..].fill(Input::zeros());
         satisfies_rows(problem, states)

@@ -76,7 +76,10 @@ fn row(vodca: &Vodca, conflict: &Conflict, horizon: Horizon) -> Option<Row> {
         _ => wanted.min(last),
     };
     let normal = turned((conflict.own - conflict.hazard) / conflict.distance, vodca.turn);
-    let offset = conflict.separation + normal.dot(&conflict.hazard);
+    // Fused on one axis only: exact mirror images (two_setpoint) would stay mirror images for ever in
+    // arithmetic that treats both axes alike; the last bit breaks the tie, as rounding did in the paper.
+    let along = normal.x.mul_add(conflict.hazard.x, normal.y * conflict.hazard.y);
+    let offset = conflict.separation + along;
     Some(Row { step, normal, offset, hard: vodca.softness == Softness::Hard })
 }
 

@@ -125,6 +125,40 @@ fn json_holds_null_where_there_is_nothing_to_meet() {
     assert_eq!(serde_json::from_value::<RunSummary>(json).unwrap(), summary);
 }
 
+/// An independent implementation wrote these runs and their figures.
+#[test]
+fn it_finds_the_figures_of_the_reference_runs() {
+    let golden: serde_json::Value =
+        serde_json::from_str(include_str!("../../../tests/golden/safe_closed_loop.json")).unwrap();
+    let points = |list: &serde_json::Value| -> Vec<Position> {
+        let list: Vec<[f64; 2]> = serde_json::from_value(list.clone()).unwrap();
+        list.into_iter().map(Position::from).collect()
+    };
+    let mut whole_runs = 0;
+    for case in golden["cases"].as_array().unwrap() {
+        let positions: Vec<Vec<Position>> = case["positions"].as_array().unwrap().iter().map(points).collect();
+        let set_points = points(&case["goal"]);
+        let robots: Vec<_> = positions[0].iter().zip(&set_points).map(|(&start, &goal)| (start, goal, None)).collect();
+        let obstacles: Vec<_> = points(&case["obstacles"]).into_iter().map(|position| (position, None)).collect();
+        let mut metrics = RunMetrics::new(&layout(&robots, &obstacles), &Params::safe());
+        for (tick, pair) in positions.windows(2).enumerate() {
+            assert!(!metrics.arrived_all(), "{} at {tick}", case["name"]);
+            let steps: Vec<Step> = pair[0].iter().zip(&pair[1]).map(|(&from, &to)| step(from, to)).collect();
+            metrics.observe(tick as u64, &steps);
+        }
+        let summary = metrics.finish();
+        let least = case["min_separation"].as_f64().unwrap();
+        assert!((summary.min_separation.unwrap() - least).abs() < 1e-8, "{}: {summary:?}", case["name"]);
+        let whole = &case["whole_run"];
+        if whole["steps"].as_u64() == Some(summary.ticks) {
+            whole_runs += 1;
+            assert!((summary.path_cost - whole["path"].as_f64().unwrap()).abs() < 1e-6, "{}", case["name"]);
+            assert_eq!(Some(summary.success), whole["ok"].as_bool(), "{}", case["name"]);
+        }
+    }
+    assert!(whole_runs >= 10, "{whole_runs}");
+}
+
 /// Positions of robots over ticks, `[tick][robot]`, radii and obstacles.
 type Run = (Vec<Vec<Position>>, Vec<Option<f64>>, Vec<(Position, Option<f64>)>);
 

@@ -4,10 +4,12 @@
 //! table, overlaid by `--set KEY=VALUE`. The effective values go into the run folder.
 //! [`table`] holds what is known about each value: unit, range, source and effect.
 
+mod file;
 mod overlay;
 mod profile;
 pub mod table;
 
+pub use file::ParamsFileError;
 pub use overlay::OverlayError;
 pub use profile::{Profile, UnknownProfile};
 
@@ -271,27 +273,6 @@ pub struct Episode {
     pub collision_factor: f64,
 }
 
-/// Why a file of effective parameters cannot be used.
-#[derive(Debug, thiserror::Error)]
-pub enum ParamsFileError {
-    /// Not TOML, or fields that are missing, unknown or of the wrong type.
-    #[error("{file}: {message}")]
-    Malformed {
-        /// Where the text came from.
-        file: String,
-        /// Line, caret and accepted names, from the TOML reader.
-        message: String,
-    },
-    /// A value outside its range.
-    #[error("{file}: {refusal}")]
-    Refused {
-        /// Where the text came from.
-        file: String,
-        /// The value and what is allowed.
-        refusal: Refusal,
-    },
-}
-
 impl Params {
     /// Checks every value against its range in [`table::ENTRIES`] and the few relations between values.
     pub fn validate(&self) -> Result<(), Refusal> {
@@ -309,26 +290,31 @@ impl Params {
         Ok(())
     }
 
-    /// All values as TOML; [`Params::from_toml`] reads the same f64 back.
-    pub fn to_toml(&self) -> String {
-        let header = "# Effective parameters: profile, overlaid by the scenario, overlaid by --set.\n\n";
-        // Plain numbers, strings and booleans in two levels of tables always have a TOML form.
-        header.to_string() + &toml::to_string(self).unwrap_or_default()
-    }
-
-    /// Reads what [`Params::to_toml`] wrote; every field must be there. `file` is named in errors.
-    pub fn from_toml(text: &str, file: &str) -> Result<Self, ParamsFileError> {
-        let params: Self = toml::from_str(text)
-            .map_err(|error| ParamsFileError::Malformed { file: file.into(), message: error.to_string() })?;
-        params.validate().map_err(|refusal| ParamsFileError::Refused { file: file.into(), refusal })?;
-        Ok(params)
+    /// Settings that are allowed and probably not meant, one sentence each, for the log of a run.
+    pub fn warnings(&self) -> Vec<String> {
+        let (kept, wanted) = (self.cell.separation, self.model.min_separation);
+        let mut warnings = Vec::new();
+        if self.cell.enabled && kept < wanted {
+            warnings.push(format!(
+                "cell.separation = {kept} m is below model.min_separation = {wanted} m: only {kept} m are guaranteed; \
+                 add --set cell.separation={wanted}"
+            ));
+        }
+        if self.cell.enabled && self.disturbance.noise > self.cell.noise_bound {
+            let noise = self.disturbance.noise;
+            warnings.push(format!(
+                "disturbance.noise = {noise} m is above cell.noise_bound = {} m: nothing is guaranteed; \
+                 add --set cell.noise_bound={noise}",
+                self.cell.noise_bound
+            ));
+        }
+        warnings
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use proptest::prelude::*;
 
     #[test]
     fn both_profiles_are_valid() {
@@ -358,22 +344,15 @@ mod tests {
     }
 
     #[test]
-    fn a_file_with_an_unknown_field_shows_the_line_and_the_names() {
-        let text = Params::safe().to_toml().replace("turn = ", "trun = ");
-        let message = Params::from_toml(&text, "params.toml").unwrap_err().to_string();
-        for part in ["params.toml:", "line ", "unknown field `trun`", "`turn`", "^"] {
-            assert!(message.contains(part), "{part} is not in:\n{message}");
-        }
-    }
-
-    proptest! {
-        #[test]
-        fn toml_reads_back_to_the_same_bits(time in 1e-9f64..10.0, weight in 1e-300f64..1e6, jitter in 0u64..=48) {
-            let mut params = Params::safe();
-            params.model.sample_time = time;
-            params.mpc.state_weight = weight;
-            params.horizon.jitter = jitter;
-            prop_assert_eq!(Params::from_toml(&params.to_toml(), "p").unwrap(), params);
-        }
+    fn settings_that_weaken_the_guarantee_are_warned_of() {
+        let mut params = Params::safe();
+        assert_eq!(params.warnings(), [""; 0]);
+        params.model.min_separation = 2.0;
+        params.disturbance.noise = 0.02;
+        let warnings = params.warnings();
+        assert!(warnings[0].ends_with("add --set cell.separation=2"), "{warnings:?}");
+        assert!(warnings[1].ends_with("add --set cell.noise_bound=0.02"), "{warnings:?}");
+        params.cell.enabled = false;
+        assert!(params.warnings().is_empty());
     }
 }

@@ -1,6 +1,6 @@
 //! Which bounds and rows are active, and what a solution says about it.
 
-use super::super::problem::Problem;
+use super::super::problem::{Plan, Problem};
 use super::chain::Bounds;
 use super::equality::Equality;
 use shared::horizon::MAX_HORIZON;
@@ -44,7 +44,11 @@ pub(super) enum Constraint {
 
 impl ActiveSet {
     pub(super) fn new(row_capacity: usize) -> Self {
-        Self { bounds: [[0; 2]; MAX_HORIZON], rows: Vec::with_capacity(row_capacity), order: Vec::with_capacity(row_capacity) }
+        Self {
+            bounds: [[0; 2]; MAX_HORIZON],
+            rows: Vec::with_capacity(row_capacity),
+            order: Vec::with_capacity(row_capacity),
+        }
     }
 
     /// Nothing active, for the rows of `problem`.
@@ -64,8 +68,20 @@ impl ActiveSet {
         self.order.extend_from_slice(&other.order);
     }
 
-    /// Adds every constraint that the solution violates; returns the most violated one.
-    pub(super) fn add_violated(&mut self, problem: &Problem<'_>, solution: &Equality) -> Option<Constraint> {
+    /// Adds the bounds that the inputs of `plan` touch.
+    pub(super) fn touch_bounds(&mut self, problem: &Problem<'_>, plan: &Plan) {
+        for (bounds, input) in self.bounds.iter_mut().zip(&plan.inputs[..problem.horizon.steps()]) {
+            for axis in 0..2 {
+                if input[axis].abs() >= problem.max_speed {
+                    bounds[axis] = if input[axis] > 0.0 { 1 } else { -1 };
+                }
+            }
+        }
+    }
+
+    /// Adds every constraint that the solution violates; returns the most violated one
+    /// and by how much, m/s (rows: metres per sample time).
+    pub(super) fn add_violated(&mut self, problem: &Problem<'_>, solution: &Equality) -> Option<(Constraint, f64)> {
         let mut worst = None;
         let mut most = 0.0;
         for l in 0..problem.horizon.steps() {
@@ -93,7 +109,7 @@ impl ActiveSet {
                 }
             }
         }
-        worst
+        worst.map(|constraint| (constraint, most))
     }
 
     /// Relaxes every constraint whose multiplier has the wrong sign, and moves soft rows to the

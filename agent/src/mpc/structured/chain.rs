@@ -136,10 +136,10 @@ impl Chain {
             self.pull[l - 1] = pull;
         }
         let mut state = start;
-        for l in 0..self.steps {
+        for (l, drift) in drift.iter().enumerate().take(self.steps) {
             let lack = self.pull[l] - self.cost_to_go[l].component_mul(&state);
             // With the drift ahead: u = a drift + gain (m - S x), whether free or fixed.
-            let input = self.closed_loop[l].component_mul(&drift[l]) + self.gain[l].component_mul(&lack);
+            let input = self.closed_loop[l].component_mul(drift) + self.gain[l].component_mul(&lack);
             state += input * h;
             self.inputs[l] = input;
             self.states[l] = state;

@@ -1,7 +1,7 @@
 //! The QP with a given active set as equations: the chains give inputs for any forces, a small
 //! dense system gives the forces (multipliers) that close the gaps of the active rows.
 
-use super::super::problem::Problem;
+use super::super::problem::{Problem, SolveError};
 use super::active::{ActiveSet, RowState};
 use super::chain::{Chain, Track};
 use super::small_factor::{MAX_ACTIVE, SmallFactor};
@@ -28,9 +28,27 @@ pub(super) struct Equality {
     drift: Track,
 }
 
-/// The active set has more rows than the solver has room for.
-#[derive(Debug)]
-pub(super) struct TooManyRows;
+/// Equation systems that may still be solved.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Budget {
+    pub(super) spent: u32,
+    pub(super) limit: u32,
+}
+
+impl Budget {
+    /// Counts one system.
+    pub(super) fn spend(&mut self) -> Result<(), SolveError> {
+        if self.spent >= self.limit {
+            return Err(self.gave_up());
+        }
+        self.spent += 1;
+        Ok(())
+    }
+
+    pub(super) fn gave_up(self) -> SolveError {
+        SolveError::GaveUp { iterations: self.spent }
+    }
+}
 
 impl Equality {
     pub(super) fn new(row_capacity: usize) -> Self {
@@ -57,8 +75,13 @@ impl Equality {
     }
 
     /// Solves with the bounds and rows of `set` as equations. A row that depends on the others is
-    /// made open in `set`.
-    pub(super) fn solve(&mut self, problem: &Problem<'_>, set: &mut ActiveSet) -> Result<(), TooManyRows> {
+    /// made open in `set`. Fails where the budget is spent or the rows are more than there is room for.
+    pub(super) fn solve(
+        &mut self,
+        problem: &Problem<'_>,
+        set: &mut ActiveSet,
+        budget: &mut Budget,
+    ) -> Result<(), SolveError> {
         let steps = problem.horizon.steps();
         for l in 0..steps {
             self.source[l] = self.draw[l];
@@ -71,7 +94,7 @@ impl Equality {
             }
         }
         self.prices.fill(0.0);
-        self.assemble(problem, set)?;
+        self.assemble(problem, set, budget)?;
         self.chain.solve(problem.position, &self.source, &self.drift);
         if self.members.is_empty() {
             return Ok(());
@@ -97,14 +120,20 @@ impl Equality {
     }
 
     /// Factors the chains and the rows' matrix for `set`; a dependent row is made open in `set`.
-    pub(super) fn assemble(&mut self, problem: &Problem<'_>, set: &mut ActiveSet) -> Result<(), TooManyRows> {
+    pub(super) fn assemble(
+        &mut self,
+        problem: &Problem<'_>,
+        set: &mut ActiveSet,
+        budget: &mut Budget,
+    ) -> Result<(), SolveError> {
+        budget.spend()?;
         self.chain.factor(&set.bounds);
         self.members.clear();
         self.factor.clear();
         for &index in &set.order {
             let state = &mut set.rows[index];
             if self.members.len() == MAX_ACTIVE {
-                return Err(TooManyRows);
+                return Err(budget.gave_up());
             }
             let row = &problem.rows[index];
             let entries = self.factor.next_row();

@@ -19,20 +19,27 @@ mod small_factor;
 use super::kkt;
 use super::problem::{Effort, Plan, Problem, QpSolver, SolveError, TargetKind};
 use active::ActiveSet;
-use equality::Equality;
+use equality::{Budget, Equality};
 use shared::Input;
-use single_step::{Outcome, SingleStep};
+use single_step::SingleStep;
 
 /// Rows that fit without allocating in a tick.
 const ROW_CAPACITY: usize = 512;
-/// Equation systems solved before giving up; the 99.9th percentile of dense problems is below half.
+/// Equation systems solved before giving up. Random problems with 10 rows need 120 at most.
 const MAX_ITERATIONS: u32 = 200;
 /// Relaxations within a block step.
 const MAX_RELAXATIONS: u32 = 8;
-/// Largest KKT residual of an answer, m/s and m.
-const ACCEPTED_RESIDUAL: f64 = 1e-9;
+/// After the n-th block step that fails in a row, 2^(n - 1) single steps follow; n up to this.
+const MAX_FAILURES: u32 = 4;
+/// Violations up to this, m/s, are not worth a single step: what block steps leave of them is
+/// rounding, and the KKT check has the last word.
+const SETTLED: f64 = 1e-10;
+/// A single step that loses this share of the cost has lost its numbers.
+const LOST_COST: f64 = 1e-6;
 /// Share of the cost that a block step may lose to rounding.
 const COST_ROUNDING: f64 = 1e-12;
+/// Largest KKT residual of an answer, m/s and m.
+const ACCEPTED_RESIDUAL: f64 = 1e-9;
 
 /// The structured solver; allocates when built, and for more than 512 rows.
 #[derive(Clone, Debug)]
@@ -41,7 +48,6 @@ pub struct Structured {
     accepted: ActiveSet,
     trial: ActiveSet,
     single_step: SingleStep,
-    pub stats: [u64; 4],
 }
 
 impl Default for Structured {
@@ -51,7 +57,6 @@ impl Default for Structured {
             accepted: ActiveSet::new(ROW_CAPACITY),
             trial: ActiveSet::new(ROW_CAPACITY),
             single_step: SingleStep::new(ROW_CAPACITY),
-            stats: [0; 4],
         }
     }
 }
@@ -62,72 +67,59 @@ impl Structured {
         &self.equality.prices
     }
 
-    /// Solves, starting from the inputs of `guess` that touch their bounds (the closed form's).
-    fn run(&mut self, problem: &Problem<'_>, guess: &Plan, iterations: &mut u32) -> Result<(), SolveError> {
-        let too_many = |iterations: &u32| SolveError::GaveUp { iterations: *iterations };
-        self.equality.reset(problem);
-        self.accepted.reset(problem);
-        if problem.target.kind == TargetKind::SetPoint {
-            for l in 0..problem.horizon.steps() {
-                for axis in 0..2 {
-                    let input = guess.inputs[l][axis];
-                    if input.abs() >= problem.max_speed {
-                        self.accepted.bounds[l][axis] = if input > 0.0 { 1 } else { -1 };
-                    }
-                }
-            }
-        }
-        // The first set only has to have multipliers of the right sign.
-        loop {
-            *iterations += 1;
-            self.equality.solve(problem, &mut self.accepted).map_err(|_| too_many(iterations))?;
-            if !self.accepted.drop_wrong(problem, &self.equality) {
-                break;
-            }
-        }
+    /// Leaves the optimum in `equality`.
+    fn run(&mut self, problem: &Problem<'_>, guess: &Plan, budget: &mut Budget) -> Result<(), SolveError> {
+        self.start(problem, guess, budget)?;
         let mut cost = self.equality.cost(problem, &self.accepted);
+        let (mut failures, mut singles) = (0, 0);
         loop {
             self.trial.copy_from(&self.accepted);
-            let Some(worst) = self.trial.add_violated(problem, &self.equality) else { return Ok(()) };
-            if let Some(next) = self.block_step(problem, cost, iterations)? {
-                std::mem::swap(&mut self.accepted, &mut self.trial);
-                self.stats[0] += 1;
-                cost = next;
-                continue;
+            let Some((worst, excess)) = self.trial.add_violated(problem, &self.equality) else { return Ok(()) };
+            if singles == 0 {
+                if let Some(next) = self.block_step(problem, cost, budget)? {
+                    std::mem::swap(&mut self.accepted, &mut self.trial);
+                    (cost, failures) = (next, 0);
+                    continue;
+                }
+                failures = (failures + 1).min(MAX_FAILURES);
+                singles = 1 << (failures - 1);
+                self.equality.solve(problem, &mut self.accepted, budget)?;
             }
-            self.stats[1] += 1;
-            if std::env::var("TRACE").is_ok() { eprintln!("it {iterations} cost {cost} worst {worst:?} trial {:?} accepted {:?} prices {:?} b {:?}", self.trial.rows, self.accepted.rows, self.equality.prices, &self.accepted.bounds[..1]); }
-            *iterations += 1;
-            self.equality.solve(problem, &mut self.accepted).map_err(|_| too_many(iterations))?;
-            let outcome = self
-                .single_step
-                .run(problem, &mut self.equality, &mut self.accepted, worst, iterations, MAX_ITERATIONS)
-                .map_err(|_| too_many(iterations))?;
-            if std::env::var("TRACE").is_ok() { eprintln!("  outcome {outcome:?} {:?} b {:?} prices {:?}", self.accepted.rows, &self.accepted.bounds[..1], self.equality.prices); }
-            match outcome {
-                Outcome::Added => {}
-                Outcome::Infeasible => return Err(SolveError::Infeasible),
-                Outcome::Stuck => return Err(too_many(iterations)),
+            if excess <= SETTLED {
+                return Ok(());
             }
-            self.equality.solve(problem, &mut self.accepted).map_err(|_| too_many(iterations))?;
-            *iterations += 1;
-            cost = self.equality.cost(problem, &self.accepted);
+            singles -= 1;
+            self.single_step.run(problem, &mut self.equality, &mut self.accepted, worst, budget)?;
+            self.equality.solve(problem, &mut self.accepted, budget)?;
+            let next = self.equality.cost(problem, &self.accepted);
+            if next < cost - LOST_COST * cost {
+                return Err(budget.gave_up());
+            }
+            cost = next;
+        }
+    }
+
+    /// The first accepted set: the bounds that `guess` touches, less those with a wrong multiplier.
+    fn start(&mut self, problem: &Problem<'_>, guess: &Plan, budget: &mut Budget) -> Result<(), SolveError> {
+        self.equality.reset(problem);
+        self.accepted.reset(problem);
+        // A feasible reference lies on its bounds without being held there.
+        if problem.target.kind == TargetKind::SetPoint {
+            self.accepted.touch_bounds(problem, guess);
+        }
+        loop {
+            self.equality.solve(problem, &mut self.accepted, budget)?;
+            if !self.accepted.drop_wrong(problem, &self.equality) {
+                return Ok(());
+            }
         }
     }
 
     /// Relaxes `trial` until its multipliers have the right signs. `Some`: its cost, not below
     /// `cost`.
-    fn block_step(
-        &mut self,
-        problem: &Problem<'_>,
-        cost: f64,
-        iterations: &mut u32,
-    ) -> Result<Option<f64>, SolveError> {
+    fn block_step(&mut self, problem: &Problem<'_>, cost: f64, budget: &mut Budget) -> Result<Option<f64>, SolveError> {
         for _ in 0..MAX_RELAXATIONS {
-            *iterations += 1;
-            if *iterations > MAX_ITERATIONS || self.equality.solve(problem, &mut self.trial).is_err() {
-                return Err(SolveError::GaveUp { iterations: *iterations });
-            }
+            self.equality.solve(problem, &mut self.trial, budget)?;
             if !self.trial.drop_wrong(problem, &self.equality) {
                 let next = self.equality.cost(problem, &self.trial);
                 let rises = next >= cost - COST_ROUNDING * cost && self.trial != self.accepted;
@@ -139,20 +131,21 @@ impl Structured {
 }
 
 impl QpSolver for Structured {
-    /// `plan` holds a guess on entry: the optimum without rows where the target is a set-point.
+    /// On entry `plan` may hold the optimum without rows, from which the solver starts; any other
+    /// content costs time only. The iterations count systems of equations.
     fn solve(&mut self, problem: &Problem<'_>, plan: &mut Plan) -> Result<Effort, SolveError> {
         let soft = problem.rows.iter().any(|row| !row.hard);
+        let mut budget = Budget { spent: 0, limit: MAX_ITERATIONS };
         if !problem.is_well_posed() || (soft && problem.slack.quadratic <= 0.0) {
-            return Err(SolveError::GaveUp { iterations: 0 });
+            return Err(budget.gave_up());
         }
-        let mut iterations = 0;
-        self.run(problem, plan, &mut iterations)?;
+        self.run(problem, plan, &mut budget)?;
         let (steps, bound) = (problem.horizon.steps(), problem.max_speed);
         for (input, exact) in plan.inputs[..steps].iter_mut().zip(&self.equality.chain.inputs) {
             *input = Input::new(exact.x.clamp(-bound, bound), exact.y.clamp(-bound, bound));
         }
         plan.inputs[steps..].fill(Input::zeros());
         let residual = kkt::residual(problem, plan, &self.equality.prices).largest();
-        if residual <= ACCEPTED_RESIDUAL { Ok(Effort { iterations }) } else { Err(SolveError::GaveUp { iterations }) }
+        if residual <= ACCEPTED_RESIDUAL { Ok(Effort { iterations: budget.spent }) } else { Err(budget.gave_up()) }
     }
 }

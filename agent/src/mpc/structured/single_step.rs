@@ -5,25 +5,24 @@
 //! equations. The dual cost rises strictly, so no active set returns; that is what the block steps
 //! of the main loop fall back on.
 
-use super::super::problem::Problem;
+use super::super::problem::{Problem, SolveError};
 use super::active::{ActiveSet, Constraint, RowState};
 use super::chain::Track;
-use super::equality::{DEPENDENT, Equality, TooManyRows, freest};
+use super::equality::{Budget, DEPENDENT, Equality, coupling, freest};
+use super::small_factor::MAX_ACTIVE;
 use nalgebra::Vector2;
 use shared::horizon::MAX_HORIZON;
 
 /// Rates of change below this share of the largest are rounding.
 const NEGLIGIBLE: f64 = 1e-11;
 
-/// How a step ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Outcome {
-    /// The constraint is active now.
-    Added,
-    /// A non-negative combination of hard rows cannot be met within the bounds; checked.
-    Infeasible,
-    /// Out of iterations, or the numbers contradict each other.
-    Stuck,
+/// The constraint being added and its multiplier so far.
+#[derive(Clone, Copy, Debug)]
+struct Added {
+    constraint: Constraint,
+    price: f64,
+    /// A soft row beyond its linear price.
+    violated: bool,
 }
 
 /// What ends a piece of the way, at which the directions change.
@@ -52,6 +51,8 @@ pub(super) struct SingleStep {
     prices: Vec<f64>,
     /// Change of the members' multipliers per unit of the added one, negated.
     rates: Vec<f64>,
+    /// How much a unit of the added multiplier opens each member.
+    couplings: Vec<f64>,
     source: Track,
     drift: Track,
 }
@@ -64,22 +65,25 @@ impl SingleStep {
             inputs: zero,
             gradient: zero,
             prices: Vec::with_capacity(row_capacity),
-            rates: Vec::with_capacity(super::small_factor::MAX_ACTIVE),
+            rates: Vec::with_capacity(MAX_ACTIVE),
+            couplings: Vec::with_capacity(MAX_ACTIVE),
             source: zero,
             drift: zero,
         }
     }
 
-    /// Adds `constraint` to `set`, whose solution `equality` holds. Counts into `iterations`.
+    /// Adds `constraint` to `set`, whose solution `equality` holds.
+    ///
+    /// `Infeasible` is proven: a non-negative combination of hard rows asks for more than the bounds
+    /// can give. `GaveUp`: out of budget, or the numbers contradict each other.
     pub(super) fn run(
         &mut self,
         problem: &Problem<'_>,
         equality: &mut Equality,
         set: &mut ActiveSet,
         constraint: Constraint,
-        iterations: &mut u32,
-        max_iterations: u32,
-    ) -> Result<Outcome, TooManyRows> {
+        budget: &mut Budget,
+    ) -> Result<(), SolveError> {
         let steps = problem.horizon.steps();
         self.states = equality.chain.states;
         self.inputs = equality.chain.inputs;
@@ -88,21 +92,14 @@ impl SingleStep {
         for l in 0..steps {
             self.gradient[l] = equality.chain.gradient(l, problem.target.inputs[l]);
         }
-        let mut price = 0.0;
-        let mut violated = false;
-        while *iterations < max_iterations {
-            *iterations += 1;
-            equality.assemble(problem, set)?;
+        let mut added = Added { constraint, price: 0.0, violated: false };
+        loop {
+            equality.assemble(problem, set, budget)?;
             let opening = self.direction(problem, equality, constraint);
-            let compliance = if violated { 1.0 / problem.slack.quadratic } else { 0.0 };
-            let missing = self.missing(problem, constraint)
-                - if violated { (price - problem.slack.linear) * compliance } else { 0.0 };
-            let independent = opening > DEPENDENT * self.scale(problem, constraint);
-            let reach = if independent || violated { missing.max(0.0) / (opening + compliance) } else { f64::INFINITY };
-            let (length, event) = self.next_event(problem, equality, set, constraint, price, violated, reach);
+            let (length, event) = self.next_event(problem, equality, set, added, opening);
             if !length.is_finite() {
                 let proven = self.proves_infeasible(problem, equality, constraint);
-                return Ok(if proven { Outcome::Infeasible } else { Outcome::Stuck });
+                return Err(if proven { SolveError::Infeasible } else { budget.gave_up() });
             }
             for l in 0..steps {
                 self.states[l] += equality.chain.states[l] * length;
@@ -112,21 +109,20 @@ impl SingleStep {
             for (&index, rate) in equality.members.iter().zip(&self.rates) {
                 self.prices[index] -= rate * length;
             }
-            price += length;
+            added.price += length;
             match event {
                 Event::FreeInput { l, axis } => set.bounds[l][axis] = 0,
                 Event::SetRow { index, state } => {
                     set.rows[index] = state;
                     set.forget_open();
                 }
-                Event::AddedViolated => violated = true,
+                Event::AddedViolated => added.violated = true,
                 Event::Met => {
-                    set.add(constraint, if violated { RowState::Violated } else { RowState::Tight });
-                    return Ok(Outcome::Added);
+                    set.add(constraint, if added.violated { RowState::Violated } else { RowState::Tight });
+                    return Ok(());
                 }
             }
         }
-        Ok(Outcome::Stuck)
     }
 
     /// Fills `rates` and leaves in `equality.chain` the change of states and inputs, all per unit of
@@ -142,9 +138,11 @@ impl SingleStep {
                 Constraint::Bound { l, axis, sign } => {
                     -f64::from(sign) * equality.chain.input_influence(row.step, l)[axis] * row.normal[axis]
                 }
-                Constraint::Row(index) => super::equality::coupling(&equality.chain, problem, index, member),
+                Constraint::Row(index) => coupling(&equality.chain, problem, index, member),
             });
         }
+        self.couplings.clear();
+        self.couplings.extend_from_slice(&self.rates);
         equality.factor.solve(&mut self.rates);
         for (&member, rate) in equality.members.iter().zip(&self.rates) {
             let row = &problem.rows[member];
@@ -180,28 +178,39 @@ impl SingleStep {
         }
     }
 
-    /// The opening that the constraint would have alone.
-    fn scale(&self, problem: &Problem<'_>, constraint: Constraint) -> f64 {
-        match constraint {
+    /// Sum of what the opening is the difference of: its rounding is a small share of this.
+    fn magnitude(&self, problem: &Problem<'_>, constraint: Constraint) -> f64 {
+        let alone = match constraint {
             Constraint::Bound { .. } => 1.0 / (2.0 * problem.input_weight),
             Constraint::Row(index) => freest(problem, problem.rows[index].step),
-        }
+        };
+        let cancelled = self.couplings.iter().zip(&self.rates).map(|(open, rate)| (open * rate).abs());
+        cancelled.fold(alone, |sum, term| sum + term)
     }
 
-    #[allow(clippy::too_many_arguments)]
+    /// How far the multiplier of the added constraint, which opens it by `opening` per unit, can
+    /// grow until something changes, and what. Infinite: for ever.
     fn next_event(
         &self,
         problem: &Problem<'_>,
         equality: &Equality,
         set: &ActiveSet,
-        constraint: Constraint,
-        price: f64,
-        violated: bool,
-        reach: f64,
+        added: Added,
+        opening: f64,
     ) -> (f64, Event) {
+        let linear = problem.slack.linear;
+        let missing = self.missing(problem, added.constraint);
+        let reach = if added.violated {
+            let compliance = 1.0 / problem.slack.quadratic;
+            (missing - (added.price - linear) * compliance).max(0.0) / (opening + compliance)
+        } else if opening > DEPENDENT * self.magnitude(problem, added.constraint) {
+            missing.max(0.0) / opening
+        } else {
+            f64::INFINITY
+        };
         let mut first = (reach, Event::Met);
         // Rates that are rounding of zero end nothing: forces that cancel leave about 1e-16 of them.
-        let unit = if matches!(constraint, Constraint::Row(_)) { 1.0 } else { 1.0 / problem.sample_time };
+        let unit = if matches!(added.constraint, Constraint::Row(_)) { 1.0 } else { 1.0 / problem.sample_time };
         let negligible = NEGLIGIBLE * self.rates.iter().fold(unit, |a, r| a.max(r.abs()));
         let negligible_gradient = negligible * problem.sample_time;
         let mut consider = |left: f64, rate: f64, negligible: f64, event: Event| {
@@ -217,10 +226,14 @@ impl SingleStep {
             let change = equality.chain.gradient(l, Vector2::zeros());
             for axis in 0..2 {
                 let sign = f64::from(set.bounds[l][axis]);
-                consider(-sign * self.gradient[l][axis], sign * change[axis], negligible_gradient, Event::FreeInput { l, axis });
+                consider(
+                    -sign * self.gradient[l][axis],
+                    sign * change[axis],
+                    negligible_gradient,
+                    Event::FreeInput { l, axis },
+                );
             }
         }
-        let linear = problem.slack.linear;
         for (&index, &rate) in equality.members.iter().zip(&self.rates) {
             let have = self.prices[index];
             let state = |state| Event::SetRow { index, state };
@@ -233,11 +246,11 @@ impl SingleStep {
                 }
             }
         }
-        if let Constraint::Row(index) = constraint
+        if let Constraint::Row(index) = added.constraint
             && !problem.rows[index].hard
-            && !violated
+            && !added.violated
         {
-            consider(linear - price, 1.0, 0.0, Event::AddedViolated);
+            consider(linear - added.price, 1.0, 0.0, Event::AddedViolated);
         }
         first
     }
