@@ -3,16 +3,23 @@
 //! The maths modules ([`horizon`], [`random`], [`separation`], [`prediction`], [`metrics`]) import
 //! nothing of the system; see ARCHITECTURE.md for the map.
 
+pub mod exchange;
 pub mod horizon;
 pub mod horizon_source;
+pub mod messages;
 pub mod metrics;
+pub mod os;
 pub mod params;
+pub mod place;
 pub mod prediction;
 pub mod random;
 pub mod scenario;
 pub mod separation;
+pub mod services;
 pub mod step;
+pub mod stop;
 pub mod suggest;
+pub mod team;
 
 /// A point in the plane, metres, world frame.
 pub type Position = nalgebra::Vector2<f64>;

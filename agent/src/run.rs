@@ -1,0 +1,152 @@
+//! One robot as a process: waits for ticks, hears the others, plans, moves, tells.
+//!
+//! Planning and moving are [`Robot::step`], as in the in-process [`crate::team`]: both give the same bytes.
+
+use crate::hearing::Hearing;
+use crate::horizons::Horizons;
+use crate::robot::Robot;
+use shared::exchange::{self, Exchange, Order};
+use shared::horizon::Horizon;
+use shared::horizon_source::HorizonSourceError;
+use shared::messages::{Report, Stamps, kind};
+use shared::os;
+use shared::services::ServiceError;
+use shared::step::Step;
+use shared::stop::StopFlag;
+use shared::team::{Setup, TeamError};
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+/// How often a waiting robot looks whether it was asked to stop.
+const LOOK_AROUND: Duration = Duration::from_millis(100);
+
+/// Why a robot's process failed.
+#[derive(Debug, thiserror::Error)]
+pub enum RunError {
+    /// The run's folder.
+    #[error(transparent)]
+    Team(#[from] TeamError),
+    /// Where horizons come from.
+    #[error(transparent)]
+    Horizons(#[from] HorizonSourceError),
+    /// There is no such robot.
+    #[error("there is no robot {robot}: the team has robots 0..={last}")]
+    NoSuchRobot {
+        /// The one asked for.
+        robot: usize,
+        /// The last one.
+        last: usize,
+    },
+    /// The exchange.
+    #[error(transparent)]
+    Exchange(#[from] ServiceError),
+    /// Nothing was announced for too long.
+    #[error("the coordinator has announced nothing for {seconds:.1} s ({place}); it has ended or hangs")]
+    Silent {
+        /// How long, s.
+        seconds: f64,
+        /// Before the first tick, or after which.
+        place: String,
+    },
+    /// A horizon was to come with the announcement and did not.
+    #[error("no horizon for tick {tick} came with its announcement, but horizons = \"policy\" says that they do")]
+    NoHorizon {
+        /// k.
+        tick: u64,
+    },
+    /// The process that started this robot is gone.
+    #[error("process {parent}, which started this robot, has ended")]
+    Orphaned {
+        /// Its number.
+        parent: u32,
+    },
+}
+
+/// What a robot's process was told on its command line.
+#[derive(Clone, Copy, Debug)]
+pub struct Launch<'a> {
+    /// Folder of the run.
+    pub run: &'a Path,
+    /// Which robot, 0-based.
+    pub robot: usize,
+    /// The process to end with; `None`: started by hand.
+    pub parent: Option<u32>,
+}
+
+/// What lives in a robot's process: [`Robot`], or something that fails on purpose (tests).
+pub trait Drive {
+    /// Plans tick `tick` and moves; `hearing` holds the others' plans of the tick before.
+    fn step(&mut self, tick: u64, horizon: Horizon, hearing: &Hearing) -> Step;
+}
+
+impl Drive for Robot {
+    fn step(&mut self, tick: u64, horizon: Horizon, hearing: &Hearing) -> Step {
+        Robot::step(self, tick, horizon, hearing)
+    }
+}
+
+/// Runs one robot until the coordinator or a signal ends it; `build` makes what lives in it.
+pub fn run<D: Drive>(
+    launch: Launch<'_>,
+    stop: &StopFlag,
+    build: impl FnOnce(&Setup, usize) -> D,
+) -> Result<(), RunError> {
+    if let Some(parent) = launch.parent
+        && !os::die_with_parent(parent)
+    {
+        return Err(RunError::Orphaned { parent });
+    }
+    os::raise_file_limit();
+    let setup = Setup::load(launch.run)?;
+    let (team, robot) = (&setup.team, launch.robot);
+    if robot >= team.robots {
+        return Err(RunError::NoSuchRobot { robot, last: team.robots - 1 });
+    }
+    let horizons = Horizons::new(&setup)?;
+    let hearing = Hearing::new(robot, &setup.scenario, &setup.params.disturbance, team.seed);
+    let drive = build(&setup, robot);
+    let mut exchange = exchange::open(team.exchange, &team.place, team.robots, robot, team.epoch)?;
+    exchange.publish(Report::presence(team.epoch, robot, kind::READY))?;
+    serve(&setup, robot, exchange.as_mut(), &horizons, hearing, drive, stop)
+}
+
+/// Takes part in every tick until told to stop. Nothing is allocated in here.
+fn serve(
+    setup: &Setup,
+    robot: usize,
+    exchange: &mut dyn Exchange,
+    horizons: &Horizons,
+    mut hearing: Hearing,
+    mut drive: impl Drive,
+    stop: &StopFlag,
+) -> Result<(), RunError> {
+    let epoch = setup.team.epoch;
+    let (mut heard_at, mut last) = (Instant::now(), None);
+    while !stop.is_set() {
+        let order = exchange.next_order(LOOK_AROUND, &mut |sender, tick, plan| hearing.hear(tick, sender, plan))?;
+        match order {
+            Some(Order::Stop) => break,
+            Some(Order::Meet) => exchange.publish(Report::presence(epoch, robot, kind::MET))?,
+            Some(Order::Tick { tick, horizon, announced, woken }) => {
+                let read = os::now_ns();
+                let horizon = horizons.at(horizon, robot, tick).ok_or(RunError::NoHorizon { tick })?;
+                let step = drive.step(tick, horizon, &hearing);
+                hearing.hear(tick, robot, &step.plan); // read from the next tick on, like everybody's
+                let planned = os::now_ns();
+                let mut report = Report::step(epoch, tick, robot, &step);
+                report.solve_ns = planned - read;
+                report.plan.stamp = os::now_ns();
+                report.stamps = Stamps { announced, woken, read, planned, reported: report.plan.stamp };
+                exchange.publish(report)?;
+                last = Some(tick);
+            }
+            None if heard_at.elapsed() > setup.team.patience(last.is_some()) => {
+                let place = last.map_or("before tick 0".to_string(), |tick| format!("after tick {tick}"));
+                return Err(RunError::Silent { seconds: heard_at.elapsed().as_secs_f64(), place });
+            }
+            None => continue,
+        }
+        heard_at = Instant::now();
+    }
+    Ok(())
+}

@@ -1,0 +1,88 @@
+//! The coordinator's side of the exchange.
+
+use super::Kind;
+use crate::horizon::Horizon;
+use crate::messages::{Announcement, Plan, Report, kind, order};
+use crate::os;
+use crate::place::Place;
+use crate::services::{Announcer, Reports, ServiceError, Services};
+use std::time::Duration;
+
+/// Announces ticks and collects reports.
+#[derive(Debug)]
+pub struct Hub {
+    announcer: Announcer,
+    reports: Reports,
+    kind: Kind,
+    epoch: u64,
+    /// The newest plan of every robot, by robot number.
+    plans: Vec<Plan>,
+    /// Keeps the services alive until the last robot has opened them.
+    _services: Services,
+}
+
+impl Hub {
+    /// Makes all services of a run.
+    pub fn create(kind: Kind, place: &Place, robots: usize, epoch: u64) -> Result<Self, ServiceError> {
+        let services = Services::create(place, robots, kind == Kind::Peer)?;
+        let frame = if kind == Kind::Relay { robots } else { 0 };
+        Ok(Self {
+            announcer: services.announcer(frame)?,
+            reports: services.reports()?,
+            kind,
+            epoch,
+            plans: vec![Plan::EMPTY; robots],
+            _services: services,
+        })
+    }
+
+    /// Announces tick `tick` to every robot, in a relayed exchange with all plans of `tick - 1`.
+    /// `horizons`: what a policy chose for this tick, by robot (missing: the robot's own source).
+    /// Gives the stamp of the announcement, ns.
+    pub fn announce(&mut self, tick: u64, horizons: &[Option<Horizon>]) -> Result<u64, ServiceError> {
+        let mut announcement = Announcement { epoch: self.epoch, tick, order: order::TICK, ..Default::default() };
+        for (to, horizon) in announcement.horizons.iter_mut().zip(horizons) {
+            *to = horizon.map_or(0, |horizon| horizon.steps() as u8);
+        }
+        let plans: &[Plan] = if self.kind == Kind::Relay && tick > 0 { &self.plans } else { &[] };
+        announcement.plans = plans.len() as u32;
+        announcement.stamp = os::now_ns();
+        self.announcer.announce(&announcement, plans)?;
+        Ok(announcement.stamp)
+    }
+
+    /// Tells every robot to connect to every other one.
+    pub fn meet(&mut self) -> Result<(), ServiceError> {
+        self.order(order::MEET)
+    }
+
+    /// Tells every robot to end.
+    pub fn stop(&mut self) -> Result<(), ServiceError> {
+        self.order(order::STOP)
+    }
+
+    fn order(&mut self, order: u32) -> Result<(), ServiceError> {
+        let announcement = Announcement { epoch: self.epoch, order, stamp: os::now_ns(), ..Default::default() };
+        self.announcer.announce(&announcement, &[])
+    }
+
+    /// Hands every unread report of this run to `take`; does not wait.
+    pub fn collect(&mut self, mut take: impl FnMut(usize, &Report)) -> Result<(), ServiceError> {
+        while let Some(report) = self.reports.receive()? {
+            let robot = report.plan.robot as usize;
+            if report.plan.epoch != self.epoch || robot >= self.plans.len() {
+                continue;
+            }
+            if report.kind == kind::STEP {
+                self.plans[robot] = report.plan;
+            }
+            take(robot, &report);
+        }
+        Ok(())
+    }
+
+    /// Waits until something may have been reported, a signal came, or `limit` has passed.
+    pub fn wait(&self, limit: Duration) -> Result<(), ServiceError> {
+        self.reports.wait(limit)
+    }
+}

@@ -1,0 +1,35 @@
+//! Plans through the coordinator: sent inside the report, received in one frame.
+
+use super::{Clock, Exchange, Hear, Order};
+use crate::messages::Report;
+use crate::services::{Reporter, ServiceError};
+use std::time::Duration;
+
+pub(super) struct Relay {
+    clock: Clock,
+    reporter: Reporter,
+}
+
+impl Relay {
+    pub(super) fn new(clock: Clock, reporter: Reporter) -> Self {
+        Self { clock, reporter }
+    }
+}
+
+impl Exchange for Relay {
+    fn next_order(&mut self, limit: Duration, hear: &mut Hear<'_>) -> Result<Option<Order>, ServiceError> {
+        let (robot, epoch) = (self.clock.robot, self.clock.epoch);
+        self.clock.next(limit, |announcement, plans| {
+            for plan in plans {
+                let wanted = plan.epoch == epoch && plan.tick + 1 == announcement.tick && plan.robot as usize != robot;
+                if let Some(prediction) = wanted.then(|| plan.prediction()).flatten() {
+                    hear(plan.robot as usize, plan.tick, &prediction);
+                }
+            }
+        })
+    }
+
+    fn publish(&mut self, report: Report) -> Result<(), ServiceError> {
+        self.reporter.report(report)
+    }
+}

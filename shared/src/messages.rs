@@ -1,0 +1,268 @@
+//! Every payload that crosses a process border. Plain memory (`repr(C)`, no pointers): the reader
+//! sees the writer's bytes. Only a type's name and size are compared when a service is opened, so
+//! any change of a field needs a new number in the names given in `services.rs`.
+//!
+//! Stamps are nanoseconds of the host's monotonic clock, comparable between its processes.
+
+use crate::horizon::{Horizon, MAX_HORIZON};
+use crate::prediction::Prediction;
+use crate::step::{Level, Status, Step};
+use crate::{Input, Position};
+
+/// The most robots a team can have (the exchange is measured up to this number).
+pub const MAX_ROBOTS: usize = 200;
+
+/// What an [`Announcement`] tells the robots to do. A number rather than an enum: a reader must
+/// survive any byte pattern.
+pub mod order {
+    /// Plan this tick.
+    pub const TICK: u32 = 1;
+    /// End normally; no report is expected.
+    pub const STOP: u32 = 2;
+    /// Everybody is there: connect to everybody, then say so.
+    pub const MEET: u32 = 3;
+}
+
+/// What a [`Report`] says.
+pub mod kind {
+    /// The robot has opened every service. Only `robot`, `pid` and `plan.epoch` count.
+    pub const READY: u32 = 1;
+    /// The robot has planned `plan.tick`.
+    pub const STEP: u32 = 2;
+    /// The robot is connected to every other robot.
+    pub const MET: u32 = 3;
+}
+
+/// The start of a tick, or the end of the run. Published by the coordinator; valid for `tick` only.
+/// In a relayed exchange `plans` plans of tick `tick - 1` follow it. A robot that misses it does
+/// nothing: the coordinator will miss its report.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct Announcement {
+    /// Which coordinator of this run speaks; robots ignore older ones.
+    pub epoch: u64,
+    /// k.
+    pub tick: u64,
+    /// When it was published, ns.
+    pub stamp: u64,
+    /// One of [`order`].
+    pub order: u32,
+    /// How many plans follow (0 in a peer exchange).
+    pub plans: u32,
+    /// N_i^k by robot when a policy chose it for this very tick; 0: the robot asks its own source.
+    pub horizons: [u8; MAX_ROBOTS],
+}
+
+/// A robot's plan of one tick. Published by the robot: in a peer exchange to every other robot, in
+/// a relayed one inside its [`Report`]. Valid for the tick after `tick`; a reader without it keeps
+/// the older one together with its tick and lets the controller decide.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct Plan {
+    /// Run identity, as in [`Announcement::epoch`].
+    pub epoch: u64,
+    /// k, the tick at which it was computed.
+    pub tick: u64,
+    /// When it was published, ns.
+    pub stamp: u64,
+    /// Whose plan, 0-based.
+    pub robot: u32,
+    /// N_i^k.
+    pub horizon: u32,
+    /// x_i^d as the robot aims at it, m.
+    pub set_point: [f64; 2],
+    /// x^_i[0..=N|k], m; the rest is meaningless.
+    pub states: [[f64; 2]; MAX_HORIZON + 1],
+}
+
+/// Stamps of one robot's tick, ns, in the order in which they happen.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Stamps {
+    /// The coordinator published the announcement.
+    pub announced: u64,
+    /// The robot saw it.
+    pub woken: u64,
+    /// The robot had all plans.
+    pub read: u64,
+    /// The robot had its own plan.
+    pub planned: u64,
+    /// The robot published its report.
+    pub reported: u64,
+}
+
+/// What a robot did in a tick. Published by the robot to the coordinator; without it the tick has
+/// no end and, past the deadline, the run has none of this robot.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct Report {
+    /// The plan (its tick and robot are the report's too).
+    pub plan: Plan,
+    /// One of [`kind`].
+    pub kind: u32,
+    /// Process that sends it.
+    pub pid: u32,
+    /// True position at the start of the tick, m.
+    pub position: [f64; 2],
+    /// Input applied, m/s.
+    pub input: [f64; 2],
+    /// True position at the end of the tick, m.
+    pub next_position: [f64; 2],
+    /// Time from having all messages to having a plan, ns.
+    pub solve_ns: u64,
+    /// When what happened.
+    pub stamps: Stamps,
+    /// Collision rows of the QP.
+    pub rows: u32,
+    /// [`Level`] as its number.
+    pub level: u8,
+    /// [`Status`] as its number.
+    pub status: u8,
+    /// 1: the last check changed the input.
+    pub shielded: u8,
+    /// Keeps the size a multiple of eight.
+    pub padding: u8,
+}
+
+impl Plan {
+    /// A plan that says nothing.
+    pub const EMPTY: Plan =
+        Plan { epoch: 0, tick: 0, stamp: 0, robot: 0, horizon: 0, set_point: [0.0; 2], states: [[0.0; 2]; MAX_HORIZON + 1] };
+
+    /// Puts a prediction into its message.
+    pub fn new(epoch: u64, tick: u64, robot: usize, prediction: &Prediction) -> Self {
+        let mut plan = Plan { epoch, tick, robot: robot as u32, ..Plan::EMPTY };
+        plan.horizon = prediction.horizon().steps() as u32;
+        plan.set_point = prediction.set_point.into();
+        for (to, from) in plan.states.iter_mut().zip(prediction.states()) {
+            *to = (*from).into();
+        }
+        plan
+    }
+
+    /// The prediction in it; `None` when its horizon is not one (a message is never trusted).
+    pub fn prediction(&self) -> Option<Prediction> {
+        let horizon = Horizon::new(u64::from(self.horizon)).ok()?;
+        let mut states = [Position::zeros(); MAX_HORIZON + 1];
+        for (to, from) in states.iter_mut().zip(&self.states[..=horizon.steps()]) {
+            *to = Position::from(*from);
+        }
+        Some(Prediction::from_states(&states[..=horizon.steps()], Position::from(self.set_point)))
+    }
+}
+
+impl Report {
+    /// A report of nothing but being there ([`kind::READY`], [`kind::MET`]).
+    pub fn presence(epoch: u64, robot: usize, kind: u32) -> Self {
+        Report {
+            plan: Plan { epoch, robot: robot as u32, ..Plan::EMPTY },
+            kind,
+            pid: std::process::id(),
+            position: [0.0; 2],
+            input: [0.0; 2],
+            next_position: [0.0; 2],
+            solve_ns: 0,
+            stamps: Stamps::default(),
+            rows: 0,
+            level: 0,
+            status: 0,
+            shielded: 0,
+            padding: 0,
+        }
+    }
+
+    /// Puts what a robot did into its message.
+    pub fn step(epoch: u64, tick: u64, robot: usize, step: &Step) -> Self {
+        Report {
+            plan: Plan::new(epoch, tick, robot, &step.plan),
+            position: step.position.into(),
+            input: step.input.into(),
+            next_position: step.next_position.into(),
+            solve_ns: step.solve_ns,
+            rows: step.rows,
+            level: step.level as u8,
+            status: step.status as u8,
+            shielded: u8::from(step.shielded),
+            ..Report::presence(epoch, robot, kind::STEP)
+        }
+    }
+
+    /// What the robot did; `None` when the bytes mean nothing (another version, a broken writer).
+    pub fn to_step(&self) -> Option<Step> {
+        let plan = self.plan.prediction()?;
+        Some(Step {
+            position: Position::from(self.position),
+            input: Input::from(self.input),
+            next_position: Position::from(self.next_position),
+            horizon: plan.horizon(),
+            rows: self.rows,
+            level: level(self.level)?,
+            status: status(self.status)?,
+            shielded: self.shielded == 1,
+            plan,
+            solve_ns: self.solve_ns,
+        })
+    }
+}
+
+fn level(number: u8) -> Option<Level> {
+    [Level::ClosedForm, Level::Structured, Level::Clarabel, Level::Fallback, Level::Baseline]
+        .into_iter()
+        .find(|level| *level as u8 == number)
+}
+
+fn status(number: u8) -> Option<Status> {
+    [Status::Solved, Status::Relaxed, Status::Held, Status::Shifted, Status::Stopped]
+        .into_iter()
+        .find(|status| *status as u8 == number)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn some_step() -> Step {
+        let states = [Position::new(1.0, -0.1), Position::new(1.1, 0.2), Position::new(1.0 / 3.0, 0.7)];
+        Step {
+            position: states[0],
+            input: Input::new(0.5, 1.5),
+            next_position: states[1],
+            horizon: Horizon::saturating(2),
+            rows: 3,
+            level: Level::Clarabel,
+            status: Status::Relaxed,
+            shielded: true,
+            plan: Prediction::from_states(&states, Position::new(9.0, -9.0)),
+            solve_ns: 1234,
+        }
+    }
+
+    #[test]
+    fn a_step_survives_the_journey_unchanged() {
+        let step = some_step();
+        let report = Report::step(7, 42, 13, &step);
+        assert_eq!((report.plan.epoch, report.plan.tick, report.plan.robot), (7, 42, 13));
+        assert_eq!(report.to_step(), Some(step));
+    }
+
+    #[test]
+    fn bytes_that_mean_nothing_are_refused() {
+        let good = Report::step(1, 2, 3, &some_step());
+        let spoilt = |spoil: fn(&mut Report)| {
+            let mut report = good;
+            spoil(&mut report);
+            report.to_step()
+        };
+        assert_eq!(spoilt(|r| r.plan.horizon = 0), None);
+        assert_eq!(spoilt(|r| r.plan.horizon = 50), None);
+        assert_eq!(spoilt(|r| r.level = 9), None);
+        assert_eq!(spoilt(|r| r.status = 5), None);
+    }
+
+    #[test]
+    fn payloads_have_no_hidden_padding() {
+        assert_eq!(size_of::<Announcement>(), 3 * 8 + 2 * 4 + MAX_ROBOTS);
+        assert_eq!(size_of::<Plan>(), 3 * 8 + 2 * 4 + 16 + 50 * 16);
+        assert_eq!(size_of::<Report>(), size_of::<Plan>() + 8 + 48 + 8 + 5 * 8 + 8);
+    }
+}

@@ -1,0 +1,153 @@
+//! Where the shared files of one run live, and how leftovers of dead runs are found.
+//!
+//! The name of a place holds the process that owns it (its number and start time, so that a number
+//! used again is no mistake). It is made by one `mkdir`: there is no moment at which a place exists
+//! without saying whose it is.
+
+use crate::os;
+use serde::{Deserialize, Serialize};
+use std::fmt;
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// Every shared-memory file of ours starts like this.
+const PREFIX: &str = "vodca_";
+/// Where shared-memory files appear.
+const SHARED_MEMORY: &str = "/dev/shm";
+
+/// Where the shared files of one run live.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Place {
+    /// Start of the names of the run's shared-memory files.
+    pub prefix: String,
+    /// Folder of its sockets and service descriptions; short, for socket paths end at 107 bytes.
+    pub root: String,
+}
+
+/// A place could not be made.
+#[derive(Debug, thiserror::Error)]
+#[error("cannot make the folder {} for the run's sockets: {source}; it must be writable for this user", path.display())]
+pub struct PlaceError {
+    /// The folder.
+    pub path: PathBuf,
+    /// What the system said.
+    pub source: io::Error,
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} and {SHARED_MEMORY}/{}*", self.root, self.prefix)
+    }
+}
+
+/// Folder of all places of this user.
+fn base() -> PathBuf {
+    PathBuf::from(format!("/tmp/vodca-{}", os::user_id()))
+}
+
+impl Place {
+    /// Makes a place that belongs to this process.
+    pub fn create() -> Result<Self, PlaceError> {
+        let pid = std::process::id();
+        let owner = format!("{pid:x}-{:x}", os::start_time(pid).unwrap_or_default());
+        let base = base();
+        let failed = |path: &Path| {
+            let path = path.to_owned();
+            move |source| PlaceError { path, source }
+        };
+        fs::create_dir_all(&base).map_err(failed(&base))?;
+        // One process may run several teams, one after the other or (in tests) at once.
+        for number in 0u32.. {
+            let id = format!("{owner}-{number:x}");
+            let root = base.join(&id);
+            match fs::create_dir(&root) {
+                Ok(()) => {
+                    return Ok(Self { prefix: format!("{PREFIX}{id}_"), root: root.to_string_lossy().into_owned() });
+                }
+                Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
+                // Another run, ending, took the empty folder with it.
+                Err(error) if error.kind() == io::ErrorKind::NotFound => {
+                    fs::create_dir_all(&base).map_err(failed(&base))?;
+                }
+                Err(error) => return Err(failed(&root)(error)),
+            }
+        }
+        unreachable!("fewer than 2^32 teams at once")
+    }
+
+    /// Deletes every file of this place. Call it when all its processes have ended.
+    pub fn remove(&self) {
+        remove_shared_memory(|prefix| prefix == self.prefix.trim_start_matches(PREFIX).trim_end_matches('_'));
+        let _ = fs::remove_dir_all(&self.root);
+        let _ = fs::remove_dir(base()); // only when no other run is there
+    }
+}
+
+/// Deletes what runs left whose owner is gone; says how many places that were. Robots of such runs
+/// end by themselves (the kernel ends them with their coordinator).
+pub fn sweep_leftovers() -> usize {
+    let mut swept = 0;
+    for entry in fs::read_dir(base()).into_iter().flatten().flatten() {
+        if owner_is_gone(&entry.file_name().to_string_lossy()) && fs::remove_dir_all(entry.path()).is_ok() {
+            swept += 1;
+        }
+    }
+    remove_shared_memory(owner_is_gone);
+    swept
+}
+
+/// Whether the owner that the id `PID-START-NUMBER` names has ended; not when it is no such id.
+fn owner_is_gone(id: &str) -> bool {
+    let mut parts = id.split('-').map(|part| u64::from_str_radix(part, 16));
+    match (parts.next(), parts.next(), parts.next(), parts.next()) {
+        (Some(Ok(pid)), Some(Ok(start)), Some(Ok(_)), None) => os::start_time(pid as u32) != Some(start),
+        _ => false,
+    }
+}
+
+/// Deletes the shared-memory files whose id (between the common prefix and the next `_`) is `chosen`.
+fn remove_shared_memory(chosen: impl Fn(&str) -> bool) {
+    for entry in fs::read_dir(SHARED_MEMORY).into_iter().flatten().flatten() {
+        let name = entry.file_name();
+        let id = name.to_str().and_then(|name| name.strip_prefix(PREFIX)).and_then(|rest| rest.split_once('_'));
+        if id.is_some_and(|(id, _)| chosen(id)) {
+            let _ = fs::remove_file(entry.path());
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_place_is_unique_and_leaves_nothing() {
+        let (first, second) = (Place::create().unwrap(), Place::create().unwrap());
+        assert_ne!(first, second);
+        let shared = format!("{SHARED_MEMORY}/{}x.data", first.prefix);
+        fs::write(&shared, "x").unwrap();
+        sweep_leftovers();
+        assert!(Path::new(&first.root).exists() && Path::new(&shared).exists(), "its owner lives");
+        first.remove();
+        assert!(!Path::new(&first.root).exists() && !Path::new(&shared).exists());
+        assert!(Path::new(&second.root).exists());
+        second.remove();
+    }
+
+    #[test]
+    fn leftovers_of_the_dead_are_swept_and_nothing_else() {
+        // Process 1 lives, but did not start at clock tick 1: its number was used again.
+        let id = format!("1-1-{:x}", std::process::id());
+        let (root, shared) = (base().join(&id), format!("{SHARED_MEMORY}/{PREFIX}{id}_y.data"));
+        let foreign = format!("{SHARED_MEMORY}/{PREFIX}note{}", std::process::id());
+        fs::create_dir_all(&root).unwrap();
+        fs::write(&shared, "y").unwrap();
+        fs::write(&foreign, "not ours").unwrap();
+        sweep_leftovers();
+        assert!(!root.exists() && !Path::new(&shared).exists());
+        assert!(Path::new(&foreign).exists());
+        fs::remove_file(foreign).unwrap();
+    }
+}

@@ -1,0 +1,462 @@
+//! The only file that knows iceoryx2: names, types and limits of every service, and thin typed ports.
+//!
+//! A run has its own prefix (of shared-memory files) and its own short root folder (of sockets, whose
+//! paths must stay below 108 bytes), see [`crate::place`]; two runs can therefore not meet.
+//! *Invariant*: the coordinator creates every service before a robot starts; robots only open. A
+//! service whose creator died half-way never heals, only deleting the run's files helps.
+
+use crate::messages::{Announcement, MAX_ROBOTS, Plan, Report};
+use crate::place::Place;
+use iceoryx2::port::listener::{Listener, ListenerWaitError};
+use iceoryx2::port::notifier::Notifier;
+use iceoryx2::port::publisher::Publisher;
+use iceoryx2::port::subscriber::Subscriber;
+use iceoryx2::port::update_connections::UpdateConnections;
+use iceoryx2::prelude::*;
+use iceoryx2::sample::Sample;
+use iceoryx2::service::builder::event::EventOpenError;
+use iceoryx2::service::builder::publish_subscribe::PublishSubscribeOpenError as OpenError;
+use iceoryx2::service::port_factory::{event, publish_subscribe};
+use std::fmt::Debug;
+use std::time::{Duration, Instant};
+
+type Ipc = ipc::Service;
+type Channel<Payload, Header = ()> = publish_subscribe::PortFactory<Ipc, Payload, Header>;
+type Alarm = event::PortFactory<Ipc>;
+
+/// Ports beyond the team's own that a service has room for: observers are refused at the exact number.
+const HEAD_ROOM: usize = 8;
+/// Samples a reader can hold and a queue can keep: the tick that is read and the next one.
+const DEPTH: usize = 2;
+/// How long a robot tries to open a service that the coordinator is still making.
+const OPEN_PATIENCE: Duration = Duration::from_secs(5);
+
+/// Something of the exchange could not be made, opened or used.
+#[derive(Debug, thiserror::Error)]
+#[error("cannot {what}: iceoryx2 says {reason}; the run's files are under {place}: has the run ended, or is /dev/shm full?")]
+pub struct ServiceError {
+    /// What was attempted.
+    pub what: String,
+    /// What iceoryx2 said.
+    pub reason: String,
+    /// Where this run's files are.
+    pub place: String,
+}
+
+fn failed(place: &Place, what: &str, which: &str, reason: impl Debug) -> ServiceError {
+    ServiceError { what: format!("{what} {which}"), reason: format!("{reason:?}"), place: place.to_string() }
+}
+
+// SAFETY of these three: `repr(C)`, only numbers and arrays of them, no pointers, no padding (tested).
+unsafe impl ZeroCopySend for Announcement {
+    unsafe fn type_name() -> &'static str {
+        "vodca/Announcement/1"
+    }
+}
+unsafe impl ZeroCopySend for Plan {
+    unsafe fn type_name() -> &'static str {
+        "vodca/Plan/1"
+    }
+}
+unsafe impl ZeroCopySend for Report {
+    unsafe fn type_name() -> &'static str {
+        "vodca/Report/1"
+    }
+}
+impl Default for Announcement {
+    fn default() -> Self {
+        Self { epoch: 0, tick: 0, stamp: 0, order: 0, plans: 0, horizons: [0; MAX_ROBOTS] }
+    }
+}
+
+/// Makes iceoryx2 install its signal handlers now rather than at the first need, so that ours can go
+/// on top of them (see `stop.rs`), and keeps its log quiet: what matters is reported by our errors.
+pub fn settle_signal_handlers() {
+    set_log_level(LogLevel::Fatal);
+    let _ = iceoryx2_bb_posix::signal::SignalHandler::last_signal();
+}
+
+/// The iceoryx2 configuration of a run.
+fn config(place: &Place) -> Result<Config, ServiceError> {
+    let mut config = Config::default();
+    config.global.prefix = FileName::new(place.prefix.as_bytes())
+        .map_err(|error| failed(place, "use the prefix", &place.prefix, error))?;
+    let root = Path::new(place.root.as_bytes()).map_err(|error| failed(place, "use the folder", &place.root, error))?;
+    config.global.set_root_path(&root);
+    // Each of these scans all of /dev/shm: at 50 robots 4.5 s of start instead of 0.8 s. Whoever ends
+    // the run deletes all of its files instead.
+    config.global.service.cleanup_dead_nodes_on_open = false;
+    config.global.node.cleanup_dead_nodes_on_creation = false;
+    config.global.node.cleanup_dead_nodes_on_destruction = false;
+    Ok(config)
+}
+
+/// The same as text of an `iceoryx2.toml`, with which `iox2` and other bindings can look into the run.
+pub fn config_text(place: &Place) -> Result<String, ServiceError> {
+    toml::to_string(&config(place)?).map_err(|error| failed(place, "write", "iceoryx2.toml", error))
+}
+
+/// All services of a run, as one process sees them.
+#[derive(Debug)]
+pub struct Services {
+    place: Place,
+    announcements: Channel<[Plan], Announcement>,
+    reports: Channel<Report>,
+    plans: Option<Channel<Plan>>,
+    tick_bell: Alarm,
+    report_bell: Alarm,
+}
+
+/// Whether services are made or opened.
+#[derive(Clone, Copy)]
+enum Role {
+    Create,
+    Open,
+}
+
+impl Services {
+    /// Makes every service of a run of `robots` robots; `peer`: also the one on which robots hear each other.
+    pub fn create(place: &Place, robots: usize, peer: bool) -> Result<Self, ServiceError> {
+        Self::new(place, robots, peer, Role::Create)
+    }
+
+    /// Opens them.
+    pub fn open(place: &Place, robots: usize, peer: bool) -> Result<Self, ServiceError> {
+        Self::new(place, robots, peer, Role::Open)
+    }
+
+    fn new(place: &Place, robots: usize, peer: bool, role: Role) -> Result<Self, ServiceError> {
+        // Signals are ours (`stop.rs`).
+        let node = NodeBuilder::new()
+            .config(&config(place)?)
+            .signal_handling_mode(SignalHandlingMode::Disabled)
+            .create::<Ipc>()
+            .map_err(|error| failed(place, "join", "the run", error))?;
+        let maker = Maker { node, place, role, everyone: robots + 1 + HEAD_ROOM, few: 1 + HEAD_ROOM };
+        Ok(Self {
+            announcements: maker.announcements("vodca/announcements")?,
+            reports: maker.channel("vodca/reports", maker.everyone, maker.few)?,
+            plans: if peer { Some(maker.channel("vodca/plans", maker.everyone, maker.everyone)?) } else { None },
+            tick_bell: maker.bell("vodca/tick", maker.few, maker.everyone)?,
+            report_bell: maker.bell("vodca/report", maker.everyone, maker.few)?,
+            place: place.clone(),
+        })
+    }
+
+    /// The coordinator's voice. `frame`: most plans an announcement carries.
+    pub fn announcer(&self, frame: usize) -> Result<Announcer, ServiceError> {
+        let publisher = self.announcements.publisher_builder().initial_max_slice_len(frame.max(1)).create();
+        Ok(Announcer {
+            publisher: publisher.map_err(|error| failed(&self.place, "publish on", "vodca/announcements", error))?,
+            bell: Bell::new(&self.tick_bell, &self.place)?,
+            place: self.place.clone(),
+        })
+    }
+
+    /// A robot's ear for the coordinator.
+    pub fn announcements(&self) -> Result<Announcements, ServiceError> {
+        let subscriber = self.announcements.subscriber_builder().create();
+        Ok(Announcements {
+            subscriber: subscriber.map_err(|error| failed(&self.place, "subscribe to", "vodca/announcements", error))?,
+            ear: Ear::new(&self.tick_bell, &self.place)?,
+            place: self.place.clone(),
+        })
+    }
+
+    /// A robot's voice to the coordinator.
+    pub fn reporter(&self) -> Result<Reporter, ServiceError> {
+        Ok(Reporter {
+            sender: Sender::new(&self.reports, &self.place)?,
+            bell: Bell::new(&self.report_bell, &self.place)?,
+        })
+    }
+
+    /// The coordinator's ear.
+    pub fn reports(&self) -> Result<Reports, ServiceError> {
+        Ok(Reports {
+            receiver: Receiver::new(&self.reports, &self.place)?,
+            ear: Ear::new(&self.report_bell, &self.place)?,
+        })
+    }
+
+    /// A robot's voice to the others and its ear for them; `None` in a relayed exchange.
+    pub fn plans(&self) -> Result<Option<(Sender<Plan>, Receiver<Plan>)>, ServiceError> {
+        let Some(service) = &self.plans else { return Ok(None) };
+        let receiver = Receiver::new(service, &self.place)?;
+        Ok(Some((Sender::new(service, &self.place)?, receiver)))
+    }
+}
+
+/// Makes or opens services: the one place of all limits. The creator fixes them.
+struct Maker<'a> {
+    node: Node<Ipc>,
+    place: &'a Place,
+    role: Role,
+    /// Every robot, the coordinator, and head-room.
+    everyone: usize,
+    /// The coordinator and head-room.
+    few: usize,
+}
+
+impl Maker<'_> {
+    fn announcements(&self, name: &str) -> Result<Channel<[Plan], Announcement>, ServiceError> {
+        self.make(name, still_being_made, |name| {
+            let builder = self.node.service_builder(name).publish_subscribe::<[Plan]>().user_header::<Announcement>();
+            match self.role {
+                Role::Open => builder.open().map_err(Trouble::Open),
+                Role::Create => builder
+                    .max_publishers(self.few)
+                    .max_subscribers(self.everyone)
+                    .max_nodes(self.everyone)
+                    .history_size(1)
+                    .subscriber_max_buffer_size(DEPTH)
+                    .subscriber_max_borrowed_samples(DEPTH)
+                    .enable_safe_overflow(true)
+                    .create()
+                    .map_err(|error| Trouble::Create(format!("{error:?}"))),
+            }
+        })
+    }
+
+    fn channel<Payload: Debug + ZeroCopySend + Copy + 'static>(
+        &self,
+        name: &str,
+        publishers: usize,
+        subscribers: usize,
+    ) -> Result<Channel<Payload>, ServiceError> {
+        self.make(name, still_being_made, |name| {
+            let builder = self.node.service_builder(name).publish_subscribe::<Payload>();
+            match self.role {
+                Role::Open => builder.open().map_err(Trouble::Open),
+                Role::Create => builder
+                    .max_publishers(publishers)
+                    .max_subscribers(subscribers)
+                    .max_nodes(self.everyone)
+                    .history_size(1)
+                    .subscriber_max_buffer_size(DEPTH)
+                    .subscriber_max_borrowed_samples(DEPTH)
+                    .enable_safe_overflow(true)
+                    .create()
+                    .map_err(|error| Trouble::Create(format!("{error:?}"))),
+            }
+        })
+    }
+
+    fn bell(&self, name: &str, notifiers: usize, listeners: usize) -> Result<Alarm, ServiceError> {
+        let again = |error: &EventOpenError| {
+            matches!(error, EventOpenError::DoesNotExist | EventOpenError::HangsInCreation)
+        };
+        self.make(name, again, |name| {
+            let builder = self.node.service_builder(name).event();
+            match self.role {
+                Role::Open => builder.open().map_err(Trouble::Open),
+                Role::Create => builder
+                    .max_notifiers(notifiers)
+                    .max_listeners(listeners)
+                    .max_nodes(self.everyone)
+                    .event_id_max_value(1)
+                    .create()
+                    .map_err(|error| Trouble::Create(format!("{error:?}"))),
+            }
+        })
+    }
+
+    /// Calls `attempt` until it gives a service, or fails for a reason that waiting does not mend.
+    fn make<T, E: Debug>(
+        &self,
+        name: &str,
+        again: impl Fn(&E) -> bool,
+        attempt: impl Fn(&ServiceName) -> Result<T, Trouble<E>>,
+    ) -> Result<T, ServiceError> {
+        let service = ServiceName::new(name).map_err(|error| failed(self.place, "name the service", name, error))?;
+        let start = Instant::now();
+        loop {
+            match attempt(&service) {
+                Ok(made) => return Ok(made),
+                Err(Trouble::Create(reason)) => return Err(failed(self.place, "make the service", name, reason)),
+                Err(Trouble::Open(error)) if again(&error) && start.elapsed() < OPEN_PATIENCE => {
+                    std::thread::sleep(Duration::from_millis(20));
+                }
+                Err(Trouble::Open(error)) => return Err(failed(self.place, "open the service", name, error)),
+            }
+        }
+    }
+}
+
+enum Trouble<E> {
+    Create(String),
+    Open(E),
+}
+
+fn still_being_made(error: &OpenError) -> bool {
+    matches!(error, OpenError::DoesNotExist | OpenError::HangsInCreation)
+}
+
+/// Publishes one type.
+#[derive(Debug)]
+pub struct Sender<Payload: Debug + ZeroCopySend + 'static> {
+    publisher: Publisher<Ipc, Payload, ()>,
+    place: Place,
+}
+
+impl<Payload: Debug + ZeroCopySend + Copy + 'static> Sender<Payload> {
+    fn new(service: &Channel<Payload>, place: &Place) -> Result<Self, ServiceError> {
+        let publisher = service.publisher_builder().create();
+        let publisher = publisher.map_err(|error| failed(place, "publish on", service.name().as_str(), error))?;
+        Ok(Self { publisher, place: place.clone() })
+    }
+
+    /// Connects to every reader there is now; sending does that as well.
+    pub fn connect(&self) -> Result<(), ServiceError> {
+        self.publisher.update_connections().map_err(|error| failed(&self.place, "connect", "to the others", error))
+    }
+
+    /// Hands `payload` to every reader; a reader that has two unread ones loses the older.
+    pub fn send(&self, payload: Payload) -> Result<(), ServiceError> {
+        let sent = self.publisher.loan_uninit().map(|sample| sample.write_payload(payload).send());
+        match sent {
+            Ok(Ok(_)) => Ok(()),
+            Ok(Err(error)) => Err(failed(&self.place, "send", "a payload", error)),
+            Err(error) => Err(failed(&self.place, "loan", "a payload", error)),
+        }
+    }
+}
+
+/// Reads one type.
+#[derive(Debug)]
+pub struct Receiver<Payload: Debug + ZeroCopySend + 'static> {
+    subscriber: Subscriber<Ipc, Payload, ()>,
+    place: Place,
+}
+
+impl<Payload: Debug + ZeroCopySend + Copy + 'static> Receiver<Payload> {
+    fn new(service: &Channel<Payload>, place: &Place) -> Result<Self, ServiceError> {
+        let subscriber = service.subscriber_builder().create();
+        let subscriber = subscriber.map_err(|error| failed(place, "subscribe to", service.name().as_str(), error))?;
+        Ok(Self { subscriber, place: place.clone() })
+    }
+
+    /// The next unread payload, in place; `None`: nothing there.
+    pub fn receive(&self) -> Result<Option<Sample<Ipc, Payload, ()>>, ServiceError> {
+        self.subscriber.receive().map_err(|error| failed(&self.place, "receive", "a payload", error))
+    }
+}
+
+/// Publishes announcements and wakes whoever waits for them.
+#[derive(Debug)]
+pub struct Announcer {
+    publisher: Publisher<Ipc, [Plan], Announcement>,
+    bell: Bell,
+    place: Place,
+}
+
+impl Announcer {
+    /// Publishes `announcement` with `plans`, then wakes every robot.
+    pub fn announce(&self, announcement: &Announcement, plans: &[Plan]) -> Result<(), ServiceError> {
+        // A slice of none is not a payload: there is always one, and `plans` says how many count.
+        let mut sample = (self.publisher.loan_slice_uninit(plans.len().max(1)))
+            .map_err(|error| failed(&self.place, "loan", "an announcement", error))?;
+        *sample.user_header_mut() = *announcement;
+        let sample = if plans.is_empty() { sample.write_from_fn(|_| Plan::EMPTY) } else { sample.write_from_slice(plans) };
+        sample.send().map_err(|error| failed(&self.place, "send", "an announcement", error))?;
+        self.bell.ring()
+    }
+}
+
+/// Receives announcements.
+#[derive(Debug)]
+pub struct Announcements {
+    subscriber: Subscriber<Ipc, [Plan], Announcement>,
+    ear: Ear,
+    place: Place,
+}
+
+impl Announcements {
+    /// The next unread announcement handed to `read` with its plans; `None`: nothing there.
+    pub fn receive<T>(&self, read: impl FnOnce(&Announcement, &[Plan]) -> T) -> Result<Option<T>, ServiceError> {
+        let sample = self.subscriber.receive().map_err(|error| failed(&self.place, "receive", "an announcement", error))?;
+        Ok(sample.map(|sample| {
+            let announcement = sample.user_header();
+            let count = (announcement.plans as usize).min(sample.payload().len());
+            read(announcement, &sample.payload()[..count])
+        }))
+    }
+
+    /// Waits until something may have been announced, a signal came, or `limit` has passed.
+    pub fn wait(&self, limit: Duration) -> Result<(), ServiceError> {
+        self.ear.wait(limit)
+    }
+}
+
+/// Publishes reports and wakes the coordinator.
+#[derive(Debug)]
+pub struct Reporter {
+    sender: Sender<Report>,
+    bell: Bell,
+}
+
+impl Reporter {
+    /// Publishes `report`, then wakes the coordinator.
+    pub fn report(&self, report: Report) -> Result<(), ServiceError> {
+        self.sender.send(report)?;
+        self.bell.ring()
+    }
+}
+
+/// Receives reports.
+#[derive(Debug)]
+pub struct Reports {
+    receiver: Receiver<Report>,
+    ear: Ear,
+}
+
+impl Reports {
+    /// The next unread report, in place; `None`: nothing there.
+    pub fn receive(&self) -> Result<Option<Sample<Ipc, Report, ()>>, ServiceError> {
+        self.receiver.receive()
+    }
+
+    /// Waits until something may have been reported, a signal came, or `limit` has passed.
+    pub fn wait(&self, limit: Duration) -> Result<(), ServiceError> {
+        self.ear.wait(limit)
+    }
+}
+
+#[derive(Debug)]
+struct Bell {
+    notifier: Notifier<Ipc>,
+    place: Place,
+}
+
+impl Bell {
+    fn new(bell: &Alarm, place: &Place) -> Result<Self, ServiceError> {
+        let notifier = bell.notifier_builder().create();
+        let notifier = notifier.map_err(|error| failed(place, "ring", bell.name().as_str(), error))?;
+        Ok(Self { notifier, place: place.clone() })
+    }
+
+    fn ring(&self) -> Result<(), ServiceError> {
+        self.notifier.notify().map(|_| ()).map_err(|error| failed(&self.place, "wake", "the others", error))
+    }
+}
+
+#[derive(Debug)]
+struct Ear {
+    listener: Listener<Ipc>,
+    place: Place,
+}
+
+impl Ear {
+    fn new(bell: &Alarm, place: &Place) -> Result<Self, ServiceError> {
+        let listener = bell.listener_builder().create();
+        let listener = listener.map_err(|error| failed(place, "listen to", bell.name().as_str(), error))?;
+        Ok(Self { listener, place: place.clone() })
+    }
+
+    fn wait(&self, limit: Duration) -> Result<(), ServiceError> {
+        match self.listener.timed_wait(|_| {}, limit) {
+            Ok(_) | Err(ListenerWaitError::InterruptSignal) => Ok(()),
+            Err(error) => Err(failed(&self.place, "wait for", "the others", error)),
+        }
+    }
+}

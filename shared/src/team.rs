@@ -1,0 +1,134 @@
+//! What every process of a run must know and no scenario or parameter says: `team.toml` in the
+//! folder of the run, written by the coordinator before it starts anybody.
+
+use crate::exchange::Kind;
+use crate::messages::MAX_ROBOTS;
+use crate::params::{Params, ParamsFileError};
+use crate::place::Place;
+use crate::scenario::{Scenario, ScenarioError};
+use serde::{Deserialize, Serialize};
+use std::io;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// Name of the team's file in the folder of a run.
+pub const TEAM_FILE: &str = "team.toml";
+/// Name of the scenario's file.
+pub const SCENARIO_FILE: &str = "scenario.toml";
+/// Name of the file of effective parameters.
+pub const PARAMS_FILE: &str = "params.toml";
+
+/// Value of [`TeamFile::horizons`] when a policy chooses them and they come with the announcements.
+pub const POLICY: &str = "policy";
+
+/// How the processes of a run find and treat each other.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TeamFile {
+    /// 1.
+    pub version: u32,
+    /// n, the number of robots.
+    pub robots: usize,
+    /// The form of the exchange.
+    pub exchange: Kind,
+    /// Where horizons come from: `fixed:20`, `random:7`, `script:FILE`, or `policy` (they come with the announcements).
+    pub horizons: String,
+    /// Seed of the jitter of horizons and of everything else random in a robot.
+    pub seed: u64,
+    /// Which coordinator of the run this is; messages of older ones are ignored.
+    pub epoch: u64,
+    /// How long a robot waits for tick 0, s.
+    pub start_patience: f64,
+    /// How long a robot waits between two ticks before it takes the coordinator for dead, s.
+    pub silence_limit: f64,
+    /// Where the shared files are.
+    pub place: Place,
+}
+
+/// The folder of a run does not say what a robot needs to know.
+#[derive(Debug, thiserror::Error)]
+pub enum TeamError {
+    /// A file cannot be read or written.
+    #[error("cannot access {}: {source}; is this the folder of a run that is being started?", path.display())]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// The file is not one of ours.
+    #[error("{}: {message}", path.display())]
+    Malformed {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong, and where.
+        message: String,
+    },
+    /// The team file and the scenario disagree.
+    #[error("{}: a team of {robots} robots, but 1..={MAX_ROBOTS} are possible and the scenario has {scenario}", path.display())]
+    Robots {
+        /// The team file.
+        path: PathBuf,
+        /// What it says.
+        robots: usize,
+        /// What the scenario says.
+        scenario: usize,
+    },
+    /// The scenario.
+    #[error(transparent)]
+    Scenario(#[from] ScenarioError),
+    /// The parameters.
+    #[error(transparent)]
+    Params(#[from] ParamsFileError),
+}
+
+/// Everything static about a run, as read from its folder.
+#[derive(Clone, Debug)]
+pub struct Setup {
+    /// The team.
+    pub team: TeamFile,
+    /// The layout.
+    pub scenario: Scenario,
+    /// The effective parameters.
+    pub params: Params,
+}
+
+impl TeamFile {
+    /// Writes it into the folder `run`.
+    pub fn write(&self, run: &Path) -> Result<(), TeamError> {
+        let path = run.join(TEAM_FILE);
+        let text = toml::to_string(self)
+            .map_err(|error| TeamError::Malformed { path: path.clone(), message: error.to_string() })?;
+        std::fs::write(&path, text).map_err(|source| TeamError::File { path, source })
+    }
+
+    /// How long a robot waits for its next order.
+    pub fn patience(&self, started: bool) -> Duration {
+        let seconds = if started { self.silence_limit } else { self.start_patience };
+        Duration::try_from_secs_f64(seconds).unwrap_or(Duration::from_secs(60))
+    }
+}
+
+impl Setup {
+    /// Reads the folder `run`.
+    pub fn load(run: &Path) -> Result<Self, TeamError> {
+        let path = run.join(TEAM_FILE);
+        let team: TeamFile = toml::from_str(&read(&path)?)
+            .map_err(|error| TeamError::Malformed { path: path.clone(), message: error.to_string() })?;
+        if team.version != 1 {
+            let message = format!("version = {} is not 1: written by another release of vodca", team.version);
+            return Err(TeamError::Malformed { path, message });
+        }
+        let scenario = Scenario::load(&run.join(SCENARIO_FILE))?;
+        if team.robots != scenario.robots.len() || !(1..=MAX_ROBOTS).contains(&team.robots) {
+            return Err(TeamError::Robots { path, robots: team.robots, scenario: scenario.robots.len() });
+        }
+        let params_path = run.join(PARAMS_FILE);
+        let params = Params::from_toml(&read(&params_path)?, &params_path.to_string_lossy())?;
+        Ok(Self { team, scenario, params })
+    }
+}
+
+fn read(path: &Path) -> Result<String, TeamError> {
+    std::fs::read_to_string(path).map_err(|source| TeamError::File { path: path.to_owned(), source })
+}
