@@ -120,8 +120,8 @@ pub struct Report {
     pub status: u8,
     /// 1: the last check changed the input.
     pub shielded: u8,
-    /// Keeps the size a multiple of eight.
-    pub padding: u8,
+    /// N_i^k as it was asked for; the plan of a fallback may have another.
+    pub horizon: u8,
 }
 
 impl Plan {
@@ -167,7 +167,7 @@ impl Report {
             level: 0,
             status: 0,
             shielded: 0,
-            padding: 0,
+            horizon: 0,
         }
     }
 
@@ -183,6 +183,7 @@ impl Report {
             level: step.level as u8,
             status: step.status as u8,
             shielded: u8::from(step.shielded),
+            horizon: step.horizon.steps() as u8,
             ..Report::presence(epoch, robot, kind::STEP)
         }
     }
@@ -194,7 +195,7 @@ impl Report {
             position: Position::from(self.position),
             input: Input::from(self.input),
             next_position: Position::from(self.next_position),
-            horizon: plan.horizon(),
+            horizon: Horizon::new(u64::from(self.horizon)).ok()?,
             rows: self.rows,
             level: level(self.level)?,
             status: status(self.status)?,
@@ -227,7 +228,7 @@ mod tests {
             position: states[0],
             input: Input::new(0.5, 1.5),
             next_position: states[1],
-            horizon: Horizon::saturating(2),
+            horizon: Horizon::saturating(30), // a fallback's plan is shorter than what was asked for
             rows: 3,
             level: Level::Clarabel,
             status: Status::Relaxed,
@@ -255,6 +256,7 @@ mod tests {
         };
         assert_eq!(spoilt(|r| r.plan.horizon = 0), None);
         assert_eq!(spoilt(|r| r.plan.horizon = 50), None);
+        assert_eq!(spoilt(|r| r.horizon = 0), None);
         assert_eq!(spoilt(|r| r.level = 9), None);
         assert_eq!(spoilt(|r| r.status = 5), None);
     }
