@@ -8,7 +8,8 @@ use shared::scenario::Scenario;
 pub fn statement(scenario: &Scenario, params: &Params, summary: &RunSummary) -> String {
     let (limit, kept) = (params.model.min_separation, params.cell.separation);
     if !params.cell.enabled {
-        return "none: this profile has no hard cell rows (cell.enabled = false); the separation was only measured".into();
+        return "none: this profile has no hard cell rows (cell.enabled = false); the separation was only measured"
+            .into();
     }
     // Before the first tick the metrics know the distances at the start.
     let at_start = RunMetrics::new(scenario, params).min_separation();
@@ -23,11 +24,7 @@ pub fn statement(scenario: &Scenario, params: &Params, summary: &RunSummary) -> 
          ({} inputs changed)",
         summary.shielded
     );
-    if kept < limit {
-        format!("{held}; not the full {limit} m, because cell.separation is {kept} m")
-    } else {
-        held
-    }
+    if kept < limit { format!("{held}; not the full {limit} m, because cell.separation is {kept} m") } else { held }
 }
 
 #[cfg(test)]

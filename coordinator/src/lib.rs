@@ -5,6 +5,7 @@
 pub mod cli;
 pub mod clock;
 pub mod commands;
+pub mod compare;
 pub mod exit;
 pub mod guarantee;
 pub mod in_process;

@@ -22,9 +22,13 @@ mod tests {
     fn results_keep_the_order_of_the_items() {
         let count = AtomicUsize::new(0);
         let items: Vec<u64> = (0..1000).collect();
-        let squares = super::map(&items, |n| n * n, || {
-            count.fetch_add(1, Ordering::Relaxed);
-        });
+        let squares = super::map(
+            &items,
+            |n| n * n,
+            || {
+                count.fetch_add(1, Ordering::Relaxed);
+            },
+        );
         assert!(squares.iter().enumerate().all(|(n, &square)| square == (n * n) as u64));
         assert_eq!(count.into_inner(), 1000);
     }

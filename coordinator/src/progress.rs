@@ -42,7 +42,8 @@ impl Progress {
         if self.0.is_hidden() {
             return;
         }
-        let nearest = if min_separation.is_finite() { format!("  min separation {min_separation:.3} m") } else { String::new() };
+        let nearest =
+            if min_separation.is_finite() { format!("  min separation {min_separation:.3} m") } else { String::new() };
         self.0.set_message(format!("arrived {arrived}/{robots}{nearest}"));
         self.0.set_position(ticks);
     }

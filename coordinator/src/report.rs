@@ -12,7 +12,15 @@ pub fn report(summary: &Summary, folder: &Path) -> String {
 
 fn robots(summary: &Summary) -> String {
     let mut table = TextTable::new(&[
-        "robot", "name", "arrived", "path m", "straight m", "activations", "fallback", "QP p50 us", "p99 us",
+        "robot",
+        "name",
+        "arrived",
+        "path m",
+        "straight m",
+        "activations",
+        "fallback",
+        "QP p50 us",
+        "p99 us",
     ]);
     for (number, (robot, solve)) in summary.run.robots.iter().zip(&summary.solve_latency).enumerate() {
         table.row([
@@ -102,7 +110,9 @@ mod tests {
     #[test]
     fn the_summary_says_why_it_failed_and_where_the_record_is() {
         let text = report(&summary(), Path::new("runs/x"));
-        for part in ["success         no: 0 of 2 arrived in time", "ticks           3", "folder          runs/x", "p50 150 us"] {
+        for part in
+            ["success         no: 0 of 2 arrived in time", "ticks           3", "folder          runs/x", "p50 150 us"]
+        {
             assert!(text.contains(part), "{part}\n{text}");
         }
     }
@@ -111,9 +121,20 @@ mod tests {
     fn the_json_holds_what_readers_look_for_and_reads_back() {
         let summary = summary();
         let json = serde_json::to_value(&summary).unwrap();
-        for name in ["success", "ticks", "completion_time", "path_cost", "path_ratio", "min_separation",
-            "ticks_below_min_separation", "collisions", "activations", "solver_levels", "robots", "version"]
-        {
+        for name in [
+            "success",
+            "ticks",
+            "completion_time",
+            "path_cost",
+            "path_ratio",
+            "min_separation",
+            "ticks_below_min_separation",
+            "collisions",
+            "activations",
+            "solver_levels",
+            "robots",
+            "version",
+        ] {
             assert!(json.get(name).is_some(), "{name}");
         }
         assert_eq!(serde_json::from_value::<Summary>(json).unwrap(), summary);

@@ -25,9 +25,8 @@ impl TextTable {
         let widths: Vec<usize> = (0..columns)
             .map(|column| self.all_rows().map(|row| cell(row, column).chars().count()).max().unwrap_or(0))
             .collect();
-        let is_word = |column: usize| {
-            self.rows.iter().any(|row| cell(row, column).starts_with(|c: char| c.is_alphabetic()))
-        };
+        let is_word =
+            |column: usize| self.rows.iter().any(|row| cell(row, column).starts_with(|c: char| c.is_alphabetic()));
         let words: Vec<bool> = (0..columns).map(is_word).collect();
         let mut text = String::new();
         for row in self.all_rows() {

@@ -83,6 +83,7 @@ fn generate(spec: &str, out: Option<PathBuf>) -> Result<(), Failure> {
         return Ok(());
     };
     // Never over a file that somebody may have edited.
-    let written = std::fs::File::create_new(&path).and_then(|mut file| std::io::Write::write_all(&mut file, text.as_bytes()));
+    let written =
+        std::fs::File::create_new(&path).and_then(|mut file| std::io::Write::write_all(&mut file, text.as_bytes()));
     written.map_err(|source| Failure::broken(WriteError { path, source }))
 }

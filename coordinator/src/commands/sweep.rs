@@ -55,7 +55,10 @@ impl FromStr for Horizons {
     type Err = HorizonSourceError;
 
     fn from_str(text: &str) -> Result<Self, HorizonSourceError> {
-        let wrong = |error: super::range::NumbersError| HorizonSourceError::Spec { spec: text.into(), reason: error.to_string() };
+        let wrong = |error: super::range::NumbersError| HorizonSourceError::Spec {
+            spec: text.into(),
+            reason: error.to_string(),
+        };
         let (kind, list) = text.split_once(':').unwrap_or(("fixed", text));
         match kind {
             "fixed" | "random" => {
@@ -82,7 +85,16 @@ pub fn run(args: Args) -> Ending {
     progress.finish();
 
     let mut table = TextTable::new(&[
-        "horizon", "seed", "success", "ticks", "path", "ratio", "min_separation", "collisions", "activations", "infeasible",
+        "horizon",
+        "seed",
+        "success",
+        "ticks",
+        "path",
+        "ratio",
+        "min_separation",
+        "collisions",
+        "activations",
+        "infeasible",
     ]);
     for (job, result) in jobs.iter().zip(&results) {
         table.row(row(job, result));
@@ -110,7 +122,8 @@ fn jobs(args: &Args, scenario: &Scenario, params: &Params) -> Result<Vec<Job>, H
 }
 
 fn run_one(job: &Job, params: &Params) -> RunSummary {
-    let outcome = run_team(&job.scenario, params, |robot, tick| job.source.horizon(robot, tick), |_, _| Ok::<(), Infallible>(()));
+    let outcome =
+        run_team(&job.scenario, params, |robot, tick| job.source.horizon(robot, tick), |_, _| Ok::<(), Infallible>(()));
     match outcome {
         Ok(metrics) => metrics.finish(),
         Err(never) => match never {},
@@ -156,7 +169,9 @@ mod tests {
 
     #[test]
     fn horizons_are_lists_of_fixed_or_random_ones() {
-        let specs = |text: &str| text.parse::<Horizons>().map(|horizons| horizons.0.iter().map(HorizonSpec::to_string).collect::<Vec<_>>());
+        let specs = |text: &str| {
+            text.parse::<Horizons>().map(|horizons| horizons.0.iter().map(HorizonSpec::to_string).collect::<Vec<_>>())
+        };
         assert_eq!(specs("5,10").unwrap(), ["fixed:5", "fixed:10"]);
         assert_eq!(specs("random:0..2").unwrap(), ["random:0", "random:1", "random:2"]);
         assert!(specs("0..3").unwrap_err().to_string().contains("1..=49"));

@@ -126,7 +126,9 @@ pub fn new_file(out: Option<&Path>, name: &str, ending: &str) -> Result<PathBuf,
     let runs = Path::new("runs");
     fs::create_dir_all(runs).map_err(|source| RecordError::Folder { path: runs.to_owned(), source })?;
     let name = format!("{}-{}", utc_now(), plain(name));
-    let numbered = |attempt| runs.join(if attempt == 1 { format!("{name}.{ending}") } else { format!("{name}-{attempt}.{ending}") });
+    let numbered = |attempt| {
+        runs.join(if attempt == 1 { format!("{name}.{ending}") } else { format!("{name}-{attempt}.{ending}") })
+    };
     Ok((1..1000).map(numbered).find(|path| !path.exists()).unwrap_or_else(|| numbered(1000)))
 }
 

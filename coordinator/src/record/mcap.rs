@@ -80,13 +80,7 @@ impl LogWriter {
     }
 
     /// Appends one tick.
-    pub fn tick(
-        &mut self,
-        scenario: &Scenario,
-        params: &Params,
-        tick: u64,
-        steps: &[Step],
-    ) -> Result<(), RecordError> {
+    pub fn tick(&mut self, scenario: &Scenario, params: &Params, tick: u64, steps: &[Step]) -> Result<(), RecordError> {
         let time = self.nanoseconds(tick);
         let scene: Message = scene::team(scenario, params, time, steps);
         let poses = scene::poses(time, steps);

@@ -54,17 +54,12 @@ pub struct Recorder {
 
 impl Recorder {
     /// Writes what is known before the first tick and opens the files that grow.
-    pub fn start(
-        folder: RunFolder,
-        scenario: &Scenario,
-        params: &Params,
-        about: &About,
-    ) -> Result<Self, RecordError> {
+    pub fn start(folder: RunFolder, scenario: &Scenario, params: &Params, about: &About) -> Result<Self, RecordError> {
         let encode = |name, what, reason| RecordError::Encode { path: folder.file(name), what, reason };
         let scenario_text =
             scenario.to_toml().map_err(|error| encode(SCENARIO_FILE, "the scenario", error.to_string()))?;
-        let about = toml::to_string(about)
-            .map_err(|error| encode(about::FILE, "the run's description", error.to_string()))?;
+        let about =
+            toml::to_string(about).map_err(|error| encode(about::FILE, "the run's description", error.to_string()))?;
         folder.write(SCENARIO_FILE, scenario_text.as_bytes())?;
         folder.write(PARAMS_FILE, params.to_toml().as_bytes())?;
         folder.write(about::FILE, about.as_bytes())?;

@@ -130,8 +130,8 @@ pub fn verify(folder: &Path) -> Result<Report, VerifyError> {
         .map_err(|error| malformed("scenario.toml", error.to_string()))?;
     let params = Params::from_toml(&read("params.toml")?, "params.toml")
         .map_err(|error| malformed("params.toml", error.to_string()))?;
-    let summary = serde_json::from_str(&read("summary.json")?)
-        .map_err(|error| malformed("summary.json", error.to_string()))?;
+    let summary =
+        serde_json::from_str(&read("summary.json")?).map_err(|error| malformed("summary.json", error.to_string()))?;
     Ok(check(&read("trajectory.csv")?, &read("horizons.csv")?, &scenario, &params, &summary))
 }
 
@@ -221,7 +221,12 @@ fn guarantee(course: &Course, scenario: &Scenario, params: &Params) -> Option<Fi
             None => format!("separation from robot {hazard}"),
             Some(obstacle) => format!("separation from obstacle {obstacle}"),
         };
-        Finding::new(Place::at(tick, robot), &what, &format!("{} m", course.min_separation), &format!("at least {kept} m"))
+        Finding::new(
+            Place::at(tick, robot),
+            &what,
+            &format!("{} m", course.min_separation),
+            &format!("at least {kept} m"),
+        )
     })
 }
 
@@ -263,6 +268,7 @@ fn finite(value: f64) -> Value {
 }
 
 fn first(table: &Table, find: impl Fn(usize, usize, &table::Row) -> Option<Finding>) -> Option<Finding> {
-    let rows = table.ticks.iter().enumerate().flat_map(|(k, rows)| rows.iter().enumerate().map(move |(i, row)| (k, i, row)));
+    let rows =
+        table.ticks.iter().enumerate().flat_map(|(k, rows)| rows.iter().enumerate().map(move |(i, row)| (k, i, row)));
     rows.into_iter().find_map(|(k, i, row)| find(k, i, row))
 }

@@ -79,7 +79,12 @@ pub(super) fn read(text: &str, robots: usize) -> Result<Table, Finding> {
     let place = Place { tick: Some(table.ticks.len() as u64), ..Place::default() };
     if table.last.len() != robots {
         let found = table.last.len().to_string();
-        return Err(Finding::new(place, "number of last positions (a run that was cut has none)", &found, &robots.to_string()));
+        return Err(Finding::new(
+            place,
+            "number of last positions (a run that was cut has none)",
+            &found,
+            &robots.to_string(),
+        ));
     }
     Ok(table)
 }
