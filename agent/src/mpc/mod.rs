@@ -5,6 +5,7 @@
 
 pub mod clarabel;
 pub mod closed_form;
+pub mod cross_check;
 pub mod kkt;
 pub mod ladder;
 pub mod polish;

@@ -118,6 +118,14 @@ impl Plan {
         }
     }
 
+    /// Largest difference of an input, m/s; not a number if one of them is not.
+    pub fn largest_difference(&self, other: &Self) -> f64 {
+        let pairs = self.inputs.iter().zip(&other.inputs);
+        pairs.flat_map(|(a, b)| [(a.x - b.x).abs(), (a.y - b.y).abs()]).fold(0.0, |largest, difference| {
+            if difference > largest || difference.is_nan() { difference } else { largest }
+        })
+    }
+
     /// Cost of the inputs, slack included (hard rows are not looked at).
     pub fn cost(&self, problem: &Problem<'_>) -> f64 {
         let mut states = [Position::zeros(); MAX_HORIZON];
