@@ -93,12 +93,23 @@ pub fn start(program: &Program, run: &Path, robot: usize) -> Result<Child, Launc
         .map_err(refused(&program.path))
 }
 
-/// The last thing a robot said, without what Rust adds to a panic; `None`: nothing.
+/// The last thing a robot said; `None`: nothing.
 pub fn last_line(run: &Path, robot: usize) -> Option<String> {
     let text = fs::read(log_file(run, robot)).ok()?;
-    let text = String::from_utf8_lossy(&text);
-    let said = |line: &&str| !line.trim().is_empty() && !line.starts_with("note: ");
-    text.lines().rev().find(said).map(|line| line.trim().to_string())
+    last_line_of(&String::from_utf8_lossy(&text))
+}
+
+/// The last line of a log. Of a panic, whose message is followed by hints and perhaps a backtrace, the
+/// message and where it happened.
+fn last_line_of(text: &str) -> Option<String> {
+    let lines: Vec<&str> = text.lines().map(str::trim).filter(|line| !line.is_empty()).collect();
+    match lines.iter().rposition(|line| line.starts_with("thread '") && line.contains(" panicked at ")) {
+        Some(at) => {
+            let place = lines[at].split_once(" panicked at ").map_or("", |(_, place)| place.trim_end_matches(':'));
+            Some(format!("panicked at {place}: {}", lines.get(at + 1)?))
+        }
+        None => lines.last().map(|line| line.to_string()),
+    }
 }
 
 /// How a process ended, in words.
@@ -108,5 +119,39 @@ pub fn ending(status: ExitStatus) -> String {
         (Some(code), _) => format!("ended with exit code {code}"),
         (None, Some(signal)) => format!("was ended by signal {signal}"),
         (None, None) => format!("ended ({status})"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_last_line_is_the_last_thing_that_was_said() {
+        assert_eq!(last_line_of("starting\nerror: no room\n\n").as_deref(), Some("error: no room"));
+        assert_eq!(last_line_of(" \n"), None);
+    }
+
+    #[test]
+    fn of_a_panic_the_message_counts_and_not_the_backtrace() {
+        let text = "warn: late\n\nthread 'main' (12) panicked at src/a.rs:3:5:\nindex out of bounds\n\
+                    stack backtrace:\n   0: core::panicking\nnote: run with more\n";
+        assert_eq!(last_line_of(text).as_deref(), Some("panicked at src/a.rs:3:5: index out of bounds"));
+    }
+
+    #[test]
+    fn endings_are_told_in_words() {
+        let status = |script| Command::new("sh").args(["-c", script]).status().unwrap();
+        assert_eq!(ending(status("exit 7")), "ended with exit code 7");
+        assert_eq!(ending(status("kill -9 $$")), "was ended by signal 9");
+    }
+
+    #[test]
+    fn a_program_that_is_not_there_is_named() {
+        let run = std::env::temp_dir().join(format!("vodca-launch-{}", std::process::id()));
+        let program = Program { path: "/nowhere/agent".into(), arguments: Vec::new() };
+        let message = start(&program, &run, 4).unwrap_err().to_string();
+        fs::remove_dir_all(run).unwrap();
+        assert!(message.contains("robot 4") && message.contains("/nowhere/agent"), "{message}");
     }
 }

@@ -8,7 +8,7 @@ use crate::launch::{self, Agents, LaunchError};
 use crate::roster::{PeerLost, Roster};
 use shared::exchange::{Hub, Kind};
 use shared::horizon::Horizon;
-use shared::messages::{Report, Stamps, kind};
+use shared::messages::{MAX_ROBOTS, Report, Stamps, kind};
 use shared::os;
 use shared::params::Params;
 use shared::place::{self, Place, PlaceError};
@@ -22,6 +22,10 @@ use std::time::{Duration, Instant};
 
 /// How often a waiting coordinator looks for signals and ended processes.
 const LOOK_AROUND: Duration = Duration::from_millis(50);
+/// The usual [`Options::tick_deadline`]: a robot that hangs ends the run within 2 s, ending included.
+pub const TICK_DEADLINE: Duration = Duration::from_millis(1200);
+/// How long no further robot may come during the start.
+pub const STALL: Duration = Duration::from_secs(3);
 /// How long robots have to end by themselves when all is well.
 const GRACE: Duration = Duration::from_millis(1200);
 /// And when one of them was lost.
@@ -46,7 +50,8 @@ pub struct Options {
     pub max_ticks: u64,
     /// How long a tick may take before a robot that has not answered is lost.
     pub tick_deadline: Duration,
-    /// How long the start may take.
+    /// How long the start may take. Of robots that are started here one is lost when, after the first
+    /// was there, no further one comes for [`STALL`].
     pub start_patience: Duration,
 }
 
@@ -61,7 +66,7 @@ impl Options {
             seed: scenario.seed,
             real_time: false,
             max_ticks: scenario.max_ticks,
-            tick_deadline: Duration::from_millis(1500),
+            tick_deadline: TICK_DEADLINE,
             start_patience: Duration::from_secs(30),
         })
     }
@@ -70,6 +75,14 @@ impl Options {
 /// Why a run could not be done. A run that was done, however it went, has an [`Outcome`].
 #[derive(Debug, thiserror::Error)]
 pub enum RunError {
+    /// Too many robots, or none.
+    #[error("the scenario {scenario} has {robots} robots; a run can have 1..={MAX_ROBOTS}")]
+    Robots {
+        /// Its name.
+        scenario: String,
+        /// How many.
+        robots: usize,
+    },
     /// The place of its shared files.
     #[error(transparent)]
     Place(#[from] PlaceError),
@@ -153,6 +166,14 @@ enum Wait {
     Lost(PeerLost),
 }
 
+/// What a report may change.
+struct Heard<'a> {
+    roster: &'a mut Roster,
+    steps: &'a mut [Option<Step>],
+    stamps: &'a mut [Stamps],
+    deadline: &'a mut Instant,
+}
+
 /// A team of processes.
 pub struct Team {
     options: Options,
@@ -181,6 +202,9 @@ impl Team {
         os::raise_file_limit();
         place::sweep_leftovers();
         let robots = scenario.robots.len();
+        if !(1..=MAX_ROBOTS).contains(&robots) {
+            return Err(RunError::Robots { scenario: scenario.name.clone(), robots });
+        }
         let place = OwnedPlace(Place::create()?);
         let file = TeamFile {
             version: 1,
@@ -242,16 +266,17 @@ impl Team {
 
     /// Waits until every robot is there, and until all are connected.
     fn gather(&mut self, stop: &StopFlag) -> Result<Wait, ServiceError> {
-        let deadline = Instant::now() + self.options.start_patience;
+        let end = Instant::now() + self.options.start_patience;
+        let stall = if matches!(self.options.agents, Agents::ByHand) { self.options.start_patience } else { STALL };
         for wanted in [kind::READY, kind::MET] {
             self.roster.expect_all();
             if wanted == kind::MET {
                 self.hub.meet()?;
             }
-            let done = self.collect(None, deadline, stop, |roster, _, _, robot, report| {
-                roster.seen(robot, report.pid);
-                if report.kind == wanted {
-                    roster.answer(robot);
+            let done = self.collect(None, end, stop, |heard, robot, report| {
+                heard.roster.seen(robot, report.pid);
+                if report.kind == wanted && heard.roster.answer(robot) && wanted == kind::READY {
+                    *heard.deadline = end.min(Instant::now() + stall);
                 }
                 Ok(())
             })?;
@@ -280,14 +305,15 @@ impl Team {
             let announced = self.hub.announce(tick, &horizons)?;
             let late = clock.begin(announced);
             let deadline = Instant::now() + self.options.tick_deadline;
-            let done = self.collect(Some(tick), deadline, stop, |roster, steps, stamps, robot, report| {
-                if report.kind != kind::STEP || report.plan.tick != tick || !roster.answer(robot) {
+            let done = self.collect(Some(tick), deadline, stop, |heard, robot, report| {
+                if report.kind != kind::STEP || report.plan.tick != tick || !heard.roster.answer(robot) {
                     return Ok(());
                 }
-                stamps[robot] = report.stamps;
-                steps[robot] = report.to_step();
+                heard.stamps[robot] = report.stamps;
+                heard.steps[robot] = report.to_step();
                 let strange = "sent a report that means nothing here; is its program of another version?";
-                steps[robot].as_ref().map(|_| ()).ok_or_else(|| roster.lost(robot, Some(tick), strange.into()))
+                let understood = heard.steps[robot].is_some();
+                if understood { Ok(()) } else { Err(heard.roster.lost(robot, Some(tick), strange.into())) }
             })?;
             match done {
                 Wait::Done => {}
@@ -329,18 +355,19 @@ impl Team {
     fn collect(
         &mut self,
         tick: Option<u64>,
-        deadline: Instant,
+        mut deadline: Instant,
         stop: &StopFlag,
-        mut take: impl FnMut(&mut Roster, &mut [Option<Step>], &mut [Stamps], usize, &Report) -> Result<(), PeerLost>,
+        mut take: impl FnMut(&mut Heard<'_>, usize, &Report) -> Result<(), PeerLost>,
     ) -> Result<Wait, ServiceError> {
         let start = Instant::now();
         let mut looked = start;
         loop {
             let (mut taken, mut lost) = (0, None);
             let Self { roster, hub, steps, stamps, .. } = self;
+            let mut heard = Heard { roster, steps, stamps, deadline: &mut deadline };
             hub.collect(|robot, report| {
                 taken += 1;
-                lost = lost.take().or(take(roster, steps, stamps, robot, report).err());
+                lost = lost.take().or(take(&mut heard, robot, report).err());
             })?;
             if let Some(lost) = lost {
                 return Ok(Wait::Lost(lost));

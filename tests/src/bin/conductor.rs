@@ -3,7 +3,7 @@
 use anyhow::Context;
 use clap::Parser;
 use coordinator::launch::{Agents, Program};
-use coordinator::run::{Options, Outcome, Team, Verdict};
+use coordinator::run::{Options, Outcome, TICK_DEADLINE, Team, Verdict};
 use shared::exchange::Kind;
 use shared::params::Profile;
 use shared::scenario;
@@ -74,7 +74,7 @@ fn run() -> anyhow::Result<ExitCode> {
         seed: 7,
         real_time: args.real_time,
         max_ticks: args.max_ticks,
-        tick_deadline: Duration::from_millis(1500),
+        tick_deadline: TICK_DEADLINE,
         start_patience: Duration::from_secs(30),
     };
     let began = Instant::now();
@@ -82,6 +82,9 @@ fn run() -> anyhow::Result<ExitCode> {
     let (mut text, mut durations, mut first) = (String::new(), Vec::new(), None);
     let mut parts: [Vec<u64>; 4] = Default::default();
     let ended = team.run(&stop, &mut |tick| {
+        if tick.tick == 0 {
+            println!("the team drives");
+        }
         first.get_or_insert_with(|| began.elapsed());
         durations.push(tick.collected - tick.announced);
         for stamps in tick.stamps {

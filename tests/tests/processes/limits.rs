@@ -1,0 +1,45 @@
+//! Teams of every size that is promised, and clear errors beyond.
+
+use std::process::Command;
+use tests::{Run, program};
+
+#[test]
+fn teams_from_one_to_a_hundred_robots_drive() {
+    for (robots, exchange) in [(1, ""), (2, ""), (32, ""), (50, ""), (100, "--relay")] {
+        let run = Run::start("agent", &format!("--scenario ring:{robots} --max-ticks 20 --to-the-end {exchange}"));
+        let finished = run.finish();
+        assert_eq!(finished.status.code(), Some(1), "{robots} robots: {finished:?}");
+        assert_eq!(finished.steps.lines().count(), 20 * robots, "{robots} robots: {}", finished.stdout);
+    }
+}
+
+#[test]
+fn a_robot_that_does_not_exist_is_refused() {
+    let mut run = Run::start("agent", "--scenario two_setpoint --to-the-end --max-ticks 10000000");
+    run.wait_until_driving();
+    let output = Command::new(program("agent")).arg("--run").arg(&run.folder).args(["--robot", "2"]).output().unwrap();
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(1));
+    assert!(message.contains("there is no robot 2: the team has robots 0..=1"), "{message}");
+    run.signal("TERM");
+    assert_eq!(run.finish().status.code(), Some(0));
+}
+
+#[test]
+fn a_robot_without_a_run_says_what_is_missing() {
+    let output = Command::new(program("agent")).args(["--run", "/nowhere", "--robot", "0"]).output().unwrap();
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(1));
+    assert!(message.contains("/nowhere/team.toml") && message.lines().count() == 1, "{message}");
+}
+
+#[test]
+fn a_robot_of_a_run_that_has_ended_says_so() {
+    let mut run = Run::start("agent", "--scenario two_setpoint");
+    run.wait();
+    let output = Command::new(program("agent")).arg("--run").arg(&run.folder).args(["--robot", "0"]).output().unwrap();
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(1));
+    assert!(message.contains("has the run ended"), "{message}");
+    run.finish();
+}

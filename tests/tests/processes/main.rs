@@ -1,0 +1,10 @@
+//! Whole runs, one file per promise.
+
+mod by_hand;
+mod crash;
+mod hang;
+mod interrupt;
+mod leftovers;
+mod limits;
+mod same_bytes;
+mod two_runs;
