@@ -11,6 +11,12 @@ pub fn statement(scenario: &Scenario, params: &Params, summary: &RunSummary) -> 
         return "none: this profile has no hard cell rows (cell.enabled = false); the separation was only measured"
             .into();
     }
+    let (noise, bound) = (params.disturbance.noise, params.cell.noise_bound);
+    if noise > bound {
+        return format!(
+            "none: positions are measured with errors of up to {noise} m, the cells allow for {bound} m (cell.noise_bound)"
+        );
+    }
     // Before the first tick the metrics know the distances at the start.
     let at_start = RunMetrics::new(scenario, params).min_separation();
     if at_start < kept {
@@ -44,6 +50,7 @@ mod tests {
         assert!(said(|_, _| ()).starts_with("separation of at least 1.5 m"));
         assert!(said(|_, params| params.cell.enabled = false).starts_with("none: "));
         assert!(said(|_, params| params.cell.separation = 1.0).contains("not the full 1.5 m"));
+        assert!(said(|_, params| params.disturbance.noise = 0.02).contains("errors of up to 0.02 m"));
         assert!(said(|scenario, _| scenario.robots[1].start.x = 1.0).starts_with("some started 1.000 m apart"));
     }
 }

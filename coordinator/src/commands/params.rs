@@ -10,7 +10,7 @@ Examples:
   ./run.sh params
   ./run.sh params --profile paper --set vodca.rows=each")]
 pub struct Args {
-    /// Parameter set: safe or paper
+    /// Parameter set: safe, paper, orca or orca-rh
     #[arg(long, default_value = "safe")]
     profile: Profile,
     /// Change a parameter (repeatable)

@@ -37,7 +37,7 @@ pub struct Args {
     /// Where horizons come from: fixed:20, fixed:9,40 (one per robot), random:SEED, script:FILE
     #[arg(long, value_name = "SPEC", default_value = "fixed:20")]
     horizon: HorizonSpec,
-    /// Parameter set: safe or paper
+    /// Parameter set: safe, paper, orca or orca-rh
     #[arg(long, value_name = "NAME", default_value = "safe")]
     profile: Profile,
     /// How plans are exchanged; left out: peer up to 20 robots, relay above
@@ -76,6 +76,7 @@ pub fn run(args: Args) -> Ending {
     let stop = StopFlag::install().map_err(Failure::broken)?;
     let (mut scenario, params) =
         set_up(args.scenario.as_deref(), args.robots, args.profile, &args.set).map_err(Failure::usage)?;
+    params.warnings().iter().for_each(|warning| tracing::warn!("{warning}"));
     scenario.seed = args.seed.unwrap_or(scenario.seed);
     scenario.max_ticks = args.max_ticks.unwrap_or(scenario.max_ticks);
     // The robots ask their own sources; whether there are horizons for all is said before any starts.

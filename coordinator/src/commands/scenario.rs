@@ -27,7 +27,7 @@ enum Action {
     Check {
         /// File, built-in name or family
         scenario: String,
-        /// Parameter set to check distances with: safe or paper
+        /// Parameter set to check distances with: safe, paper, orca or orca-rh
         #[arg(long, default_value = "safe")]
         profile: Profile,
         /// Change a parameter (repeatable)

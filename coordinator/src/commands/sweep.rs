@@ -33,7 +33,7 @@ pub struct Args {
     /// Seeds of the run (jitter), instead of the scenario's own: 0..9, both ends included
     #[arg(long)]
     seeds: Option<Numbers>,
-    /// Parameter set: safe or paper
+    /// Parameter set: safe, paper, orca or orca-rh
     #[arg(long, default_value = "safe")]
     profile: Profile,
     /// Change a parameter (repeatable)

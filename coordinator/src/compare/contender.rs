@@ -1,13 +1,9 @@
 //! Who is compared: a controller, its parameters and where its horizons come from.
 
-use shared::horizon_source::HorizonSpec;
-use shared::params::Profile;
+use shared::horizon_source::{HorizonSourceError, HorizonSpec};
+use shared::params::{Profile, UnknownProfile};
 use std::fmt;
 use std::str::FromStr;
-
-/// ORCA-RH: one second ahead, everybody aims 0.35 rad right of the set-point.
-const ORCA_RH: [&str; 3] = ["controller.kind=orca", "orca.time_horizon=1.0", "orca.aim=0.35"];
-const ORCA: [&str; 1] = ["controller.kind=orca"];
 
 /// A controller with its settings: `safe:fixed:20`, `paper:random`, `orca`, `orca:5`, `orca-rh`.
 #[derive(Clone, Debug)]
@@ -36,30 +32,19 @@ impl FromStr for Contender {
 
     fn from_str(spec: &str) -> Result<Self, ContenderError> {
         let wrong = |reason: String| ContenderError { spec: spec.into(), reason };
-        let orca = |sets: &[&str]| Self {
-            name: spec.into(),
-            profile: Profile::Paper,
-            sets: sets.iter().map(|set| set.to_string()).collect(),
-            horizon: HorizonSpec::Fixed(vec![shared::horizon::Horizon::MIN]),
-        };
         let (kind, rest) = spec.split_once(':').map_or((spec, None), |(kind, rest)| (kind, Some(rest)));
-        match (kind, rest) {
-            ("orca", None) => Ok(orca(&ORCA)),
-            ("orca", Some(time_horizon)) => {
+        let profile = kind.parse().map_err(|error: UnknownProfile| wrong(error.to_string()))?;
+        let (mut sets, mut horizon) = (Vec::new(), "fixed:20");
+        match (profile, rest) {
+            (Profile::Orca | Profile::OrcaRh, Some(time_horizon)) => {
                 time_horizon.parse::<f64>().map_err(|error| wrong(error.to_string()))?;
-                Ok(orca(&[ORCA[0], &format!("orca.time_horizon={time_horizon}")]))
+                sets.push(format!("orca.time_horizon={time_horizon}"));
             }
-            ("orca-rh", None) => Ok(orca(&ORCA_RH)),
-            (profile, horizon) => Ok(Self {
-                name: spec.into(),
-                profile: profile.parse().map_err(|error: shared::params::UnknownProfile| wrong(error.to_string()))?,
-                sets: Vec::new(),
-                horizon: horizon
-                    .unwrap_or("fixed:20")
-                    .parse()
-                    .map_err(|error: shared::horizon_source::HorizonSourceError| wrong(error.to_string()))?,
-            }),
+            (_, Some(rest)) => horizon = rest,
+            (_, None) => {}
         }
+        let horizon = horizon.parse().map_err(|error: HorizonSourceError| wrong(error.to_string()))?;
+        Ok(Self { name: spec.into(), profile, sets, horizon })
     }
 }
 
@@ -90,7 +75,7 @@ mod tests {
 
     #[test]
     fn anything_else_is_answered_with_examples() {
-        for spec in ["orcas", "safe:fixed:99", "orca:fast", "orca-rh:3"] {
+        for spec in ["orcas", "safe:fixed:99", "orca:fast"] {
             let message = spec.parse::<Contender>().unwrap_err().to_string();
             assert!(message.contains("safe:fixed:20"), "{message}");
         }

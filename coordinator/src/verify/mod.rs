@@ -211,10 +211,12 @@ fn chosen_horizons(table: &Table, horizons: &str) -> Option<Finding> {
     None
 }
 
-/// With cells on, nobody comes nearer than they keep, unless the start was nearer already.
+/// With cells on, nobody comes nearer than they keep, unless the start was nearer already or positions are
+/// measured worse than the cells allow for.
 fn guarantee(course: &Course, scenario: &Scenario, params: &Params) -> Option<Finding> {
     let kept = params.model.min_separation.min(params.cell.separation);
-    let promised = params.cell.enabled && !scenario.allow_close_start;
+    let measured_well = params.disturbance.noise <= params.cell.noise_bound;
+    let promised = params.cell.enabled && measured_well && !scenario.allow_close_start;
     (promised && course.min_separation < kept - TOUCH).then(|| {
         let (tick, robot, hazard) = course.nearest;
         let what = match hazard.checked_sub(scenario.robots.len()) {
