@@ -46,7 +46,7 @@ pub struct Args {
     /// Seed of everything random, instead of the scenario's
     #[arg(long)]
     seed: Option<u64>,
-    /// Folder of the run, new or empty; left out: runs/<UTC time>-<scenario>-<N>
+    /// Folder of the run, new or empty; left out: `runs/UTC-SCENARIO-N`
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// One tick per sample time instead of as fast as everybody answers

@@ -12,7 +12,7 @@
 //! are written by `scene.rs`; Foxglove's own Python decoder reads them back.
 //!
 //! Log time is `tick * sample_time` from 0 and nothing measured goes in, so two equal runs give equal bytes.
-//! Chunks are written whole every [`TICKS_PER_CHUNK`] ticks: a log cut at any byte reads in stream order
+//! Chunks are written whole every 25 ticks (5 s): a log cut at any byte reads in stream order
 //! up to its last whole chunk.
 
 use super::folder::RecordError;
