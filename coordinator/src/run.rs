@@ -252,13 +252,8 @@ impl Team {
     }
 
     /// Runs all ticks. `observer` sees every tick that everybody has finished and decides what comes next.
-    pub fn run(
-        mut self,
-        stop: &StopFlag,
-        observer: &mut dyn FnMut(&Tick<'_>) -> Verdict,
-    ) -> Result<Ended, RunError> {
-        let mut clock =
-            if self.options.real_time { Clock::real_time(self.sample_time) } else { Clock::lock_step() };
+    pub fn run(mut self, stop: &StopFlag, observer: &mut dyn FnMut(&Tick<'_>) -> Verdict) -> Result<Ended, RunError> {
+        let mut clock = if self.options.real_time { Clock::real_time(self.sample_time) } else { Clock::lock_step() };
         let mut ticks = 0;
         let outcome = match self.gather(stop)? {
             Wait::Done => self.tick_on(stop, observer, &mut clock, &mut ticks)?,
