@@ -126,8 +126,15 @@ pub struct Report {
 
 impl Plan {
     /// A plan that says nothing.
-    pub const EMPTY: Plan =
-        Plan { epoch: 0, tick: 0, stamp: 0, robot: 0, horizon: 0, set_point: [0.0; 2], states: [[0.0; 2]; MAX_HORIZON + 1] };
+    pub const EMPTY: Plan = Plan {
+        epoch: 0,
+        tick: 0,
+        stamp: 0,
+        robot: 0,
+        horizon: 0,
+        set_point: [0.0; 2],
+        states: [[0.0; 2]; MAX_HORIZON + 1],
+    };
 
     /// Puts a prediction into its message.
     pub fn new(epoch: u64, tick: u64, robot: usize, prediction: &Prediction) -> Self {

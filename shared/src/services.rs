@@ -23,6 +23,8 @@ use std::time::{Duration, Instant};
 type Ipc = ipc::Service;
 type Channel<Payload, Header = ()> = publish_subscribe::PortFactory<Ipc, Payload, Header>;
 type Alarm = event::PortFactory<Ipc>;
+/// A robot's ports to the other robots.
+pub type PlanPorts = (Sender<Plan>, Receiver<Plan>);
 
 /// Ports beyond the team's own that a service has room for: observers are refused at the exact number.
 const HEAD_ROOM: usize = 8;
@@ -33,7 +35,9 @@ const OPEN_PATIENCE: Duration = Duration::from_secs(5);
 
 /// Something of the exchange could not be made, opened or used.
 #[derive(Debug, thiserror::Error)]
-#[error("cannot {what}: iceoryx2 says {reason}; the run's files are under {place}: has the run ended, or is /dev/shm full?")]
+#[error(
+    "cannot {what}: iceoryx2 says {reason}; the run's files are under {place}: has the run ended, or is /dev/shm full?"
+)]
 pub struct ServiceError {
     /// What was attempted.
     pub what: String,
@@ -157,7 +161,8 @@ impl Services {
     pub fn announcements(&self) -> Result<Announcements, ServiceError> {
         let subscriber = self.announcements.subscriber_builder().create();
         Ok(Announcements {
-            subscriber: subscriber.map_err(|error| failed(&self.place, "subscribe to", "vodca/announcements", error))?,
+            subscriber: subscriber
+                .map_err(|error| failed(&self.place, "subscribe to", "vodca/announcements", error))?,
             ear: Ear::new(&self.tick_bell, &self.place)?,
             place: self.place.clone(),
         })
@@ -180,7 +185,7 @@ impl Services {
     }
 
     /// A robot's voice to the others and its ear for them; `None` in a relayed exchange.
-    pub fn plans(&self) -> Result<Option<(Sender<Plan>, Receiver<Plan>)>, ServiceError> {
+    pub fn plans(&self) -> Result<Option<PlanPorts>, ServiceError> {
         let Some(service) = &self.plans else { return Ok(None) };
         let receiver = Receiver::new(service, &self.place)?;
         Ok(Some((Sender::new(service, &self.place)?, receiver)))
@@ -243,9 +248,8 @@ impl Maker<'_> {
     }
 
     fn bell(&self, name: &str, notifiers: usize, listeners: usize) -> Result<Alarm, ServiceError> {
-        let again = |error: &EventOpenError| {
-            matches!(error, EventOpenError::DoesNotExist | EventOpenError::HangsInCreation)
-        };
+        let again =
+            |error: &EventOpenError| matches!(error, EventOpenError::DoesNotExist | EventOpenError::HangsInCreation);
         self.make(name, again, |name| {
             let builder = self.node.service_builder(name).event();
             match self.role {
@@ -357,7 +361,8 @@ impl Announcer {
         let mut sample = (self.publisher.loan_slice_uninit(plans.len().max(1)))
             .map_err(|error| failed(&self.place, "loan", "an announcement", error))?;
         *sample.user_header_mut() = *announcement;
-        let sample = if plans.is_empty() { sample.write_from_fn(|_| Plan::EMPTY) } else { sample.write_from_slice(plans) };
+        let sample =
+            if plans.is_empty() { sample.write_from_fn(|_| Plan::EMPTY) } else { sample.write_from_slice(plans) };
         sample.send().map_err(|error| failed(&self.place, "send", "an announcement", error))?;
         self.bell.ring()
     }
@@ -374,7 +379,8 @@ pub struct Announcements {
 impl Announcements {
     /// The next unread announcement handed to `read` with its plans; `None`: nothing there.
     pub fn receive<T>(&self, read: impl FnOnce(&Announcement, &[Plan]) -> T) -> Result<Option<T>, ServiceError> {
-        let sample = self.subscriber.receive().map_err(|error| failed(&self.place, "receive", "an announcement", error))?;
+        let sample =
+            self.subscriber.receive().map_err(|error| failed(&self.place, "receive", "an announcement", error))?;
         Ok(sample.map(|sample| {
             let announcement = sample.user_header();
             let count = (announcement.plans as usize).min(sample.payload().len());

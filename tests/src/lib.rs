@@ -3,6 +3,7 @@
 
 use std::collections::BTreeMap;
 use std::fs::{self, File};
+use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::sync::OnceLock;
@@ -22,7 +23,18 @@ pub fn program(name: &str) -> PathBuf {
 
 fn build() -> BTreeMap<String, PathBuf> {
     let output = Command::new(env!("CARGO"))
-        .args(["build", "--release", "--bins", "--message-format=json", "-p", "agent", "-p", "coordinator", "-p", "tests"])
+        .args([
+            "build",
+            "--release",
+            "--bins",
+            "--message-format=json",
+            "-p",
+            "agent",
+            "-p",
+            "coordinator",
+            "-p",
+            "tests",
+        ])
         .current_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join(".."))
         .stderr(Stdio::inherit())
         .output()
@@ -37,6 +49,18 @@ fn build() -> BTreeMap<String, PathBuf> {
         })
         .collect()
 }
+
+/// Who plays the robots.
+#[derive(Clone, Copy)]
+pub enum Robots {
+    /// The real ones.
+    Real,
+    /// Fake ones, which fail as `--fault` says.
+    Faulty(&'static str),
+}
+
+/// Options with which robots drive so slowly that a run lasts until it is ended.
+pub const ENDLESS: &str = "--set model.max_speed=0.0001 --max-ticks 1000000";
 
 /// A run in progress. Killed when dropped.
 pub struct Run {
@@ -55,28 +79,31 @@ pub struct Finished {
     pub stdout: String,
     /// What it complained about.
     pub stderr: String,
-    /// What every robot did, line by line.
-    pub steps: String,
+    /// What every robot did (`trajectory.csv`).
+    pub trajectory: String,
+    /// How it went (`summary.json`), null when it was not written.
+    pub summary: serde_json::Value,
 }
 
 impl Run {
-    /// Starts a run of `robot` (a program of [`program`]) in a folder of its own.
-    pub fn start(robot: &str, arguments: &str) -> Self {
-        Self::start_with(Some(robot), arguments)
-    }
-
-    /// The same; `None`: robots are started by hand.
-    pub fn start_with(robot: Option<&str>, arguments: &str) -> Self {
+    /// Starts `coordinator run ARGUMENTS` with a folder of its own.
+    pub fn start(robots: Robots, arguments: &str) -> Self {
         let home = tempfile::tempdir().expect("a folder for the test");
         let folder = home.path().join("run");
         let file = |name: &str| File::create(home.path().join(name)).expect("a file for the test");
-        let mut command = Command::new(program("conductor"));
-        command.arg("--out").arg(&folder).args(arguments.split_whitespace());
-        if let Some(robot) = robot {
-            command.arg("--agent").arg(program(robot));
-        }
-        let child = command.stdin(Stdio::null()).stdout(file("stdout")).stderr(file("stderr")).spawn();
-        Self { folder, child: child.expect("the conductor starts"), home }
+        let coordinator = match robots {
+            Robots::Real => program("coordinator"),
+            Robots::Faulty(fault) => beside_fakes(home.path(), fault),
+        };
+        let child = Command::new(coordinator)
+            .args(["run", "--out"])
+            .arg(&folder)
+            .args(arguments.split_whitespace())
+            .stdin(Stdio::null())
+            .stdout(file("stdout"))
+            .stderr(file("stderr"))
+            .spawn();
+        Self { folder, child: child.expect("the coordinator starts"), home }
     }
 
     /// The coordinator's process.
@@ -97,10 +124,10 @@ impl Run {
     /// Waits until the robots have finished their first tick.
     pub fn wait_until_driving(&mut self) {
         let child = &mut self.child;
-        let stdout = self.home.path().join("stdout");
+        let trajectory = self.folder.join("trajectory.csv");
         wait_until("the team drives", || {
             assert!(matches!(child.try_wait(), Ok(None)), "the run ended early");
-            fs::read_to_string(&stdout).is_ok_and(|text| text.contains("the team drives"))
+            fs::read_to_string(&trajectory).is_ok_and(|text| text.lines().count() > 1)
         });
     }
 
@@ -118,7 +145,8 @@ impl Run {
             status,
             stdout: read(self.home.path().join("stdout")),
             stderr: read(self.home.path().join("stderr")),
-            steps: read(self.folder.join("steps.csv")),
+            trajectory: read(self.folder.join("trajectory.csv")),
+            summary: serde_json::from_str(&read(self.folder.join("summary.json"))).unwrap_or_default(),
         }
     }
 
@@ -139,6 +167,16 @@ impl Drop for Run {
         let _ = self.child.kill(); // has ended in a test that passes
         let _ = self.child.wait();
     }
+}
+
+/// The coordinator in a folder where fake robots lie beside it in place of the real ones.
+fn beside_fakes(folder: &Path, fault: &str) -> PathBuf {
+    let (coordinator, agent) = (folder.join("coordinator"), folder.join("agent"));
+    fs::copy(program("coordinator"), &coordinator).expect("a copy of the coordinator");
+    let script = format!("#!/bin/sh\nexec {} --fault {fault} \"$@\"\n", program("fake_agent").display());
+    fs::write(&agent, script).expect("a script for the fake robots");
+    fs::set_permissions(&agent, fs::Permissions::from_mode(0o755)).expect("it can be executed");
+    coordinator
 }
 
 /// Sends a signal.
@@ -171,7 +209,8 @@ pub fn robots_of(folder: &Path) -> Vec<u32> {
 /// Shared-memory files and folders of sockets that belong to runs of the coordinator `pid`.
 pub fn shared_files(pid: u32) -> Vec<PathBuf> {
     let user = shared::os::user_id();
-    let folders = [("/dev/shm".to_string(), format!("vodca_{pid:x}-")), (format!("/tmp/vodca-{user}"), format!("{pid:x}-"))];
+    let folders =
+        [("/dev/shm".to_string(), format!("vodca_{pid:x}-")), (format!("/tmp/vodca-{user}"), format!("{pid:x}-"))];
     let of = |(folder, start): (String, String)| {
         let entries = fs::read_dir(folder).into_iter().flatten().flatten();
         entries.filter(move |entry| entry.file_name().to_string_lossy().starts_with(&start)).map(|entry| entry.path())

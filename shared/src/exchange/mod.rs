@@ -75,7 +75,13 @@ pub trait Exchange {
 }
 
 /// Opens robot `robot`'s side of the exchange of a run.
-pub fn open(kind: Kind, place: &Place, robots: usize, robot: usize, epoch: u64) -> Result<Box<dyn Exchange>, ServiceError> {
+pub fn open(
+    kind: Kind,
+    place: &Place,
+    robots: usize,
+    robot: usize,
+    epoch: u64,
+) -> Result<Box<dyn Exchange>, ServiceError> {
     let services = Services::open(place, robots, kind == Kind::Peer)?;
     let clock = Clock { announcements: services.announcements()?, robot, epoch, next_tick: 0 };
     let reporter = services.reporter()?;

@@ -42,8 +42,7 @@ impl Drive for Straight {
             fail(kind);
         }
         let position = self.position;
-        let input =
-            ((self.set_point - position) / self.sample_time).map(|u| u.clamp(-self.max_speed, self.max_speed));
+        let input = ((self.set_point - position) / self.sample_time).map(|u| u.clamp(-self.max_speed, self.max_speed));
         self.position = position + input * self.sample_time;
         Step {
             position,
@@ -92,14 +91,12 @@ fn main() -> ExitCode {
     let fault = fault.and_then(|(kind, tick)| Some((kind, tick?)));
     let launch = Launch { run: &args.run, robot: args.robot, parent: args.parent };
     let done = StopFlag::install().map_err(|error| error.to_string()).and_then(|stop| {
-        run(launch, &stop, |setup, robot| {
-Straight {
-                position: setup.scenario.robots[robot].start,
-                set_point: setup.scenario.robots[robot].set_point,
-                sample_time: setup.params.model.sample_time,
-                max_speed: setup.params.model.max_speed,
-                fault,
-            }
+        run(launch, &stop, |setup, robot| Straight {
+            position: setup.scenario.robots[robot].start,
+            set_point: setup.scenario.robots[robot].set_point,
+            sample_time: setup.params.model.sample_time,
+            max_speed: setup.params.model.max_speed,
+            fault,
         })
         .map_err(|error| error.to_string())
     });

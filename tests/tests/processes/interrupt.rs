@@ -3,24 +3,26 @@
 use std::os::unix::process::ExitStatusExt;
 use std::thread::sleep;
 use std::time::Duration;
-use tests::Run;
+use tests::{ENDLESS, Robots, Run};
 
 #[test]
 fn an_interrupted_run_ends_in_order() {
-    for (signal, exchange) in [("INT", ""), ("TERM", "--relay"), ("HUP", "")] {
-        let mut run = Run::start("agent", &format!("--scenario ex14_d --to-the-end --max-ticks 10000000 {exchange}"));
+    for (signal, exchange) in [("INT", "peer"), ("TERM", "relay"), ("HUP", "peer")] {
+        let mut run = Run::start(Robots::Real, &format!("14 {ENDLESS} --exchange {exchange}"));
         run.wait_until_driving();
         run.signal(signal);
         let finished = run.finish();
         assert_eq!(finished.status.code(), Some(0), "{signal}: {finished:?}");
-        assert!(finished.stdout.contains("Stopped after"), "{signal}: {finished:?}");
-        assert!(finished.steps.starts_with("0,0,"), "{signal}: what was done must be there");
+        // What was done is there, whole: a row per robot and tick, and the final positions.
+        let rows = finished.trajectory.lines().count() as u64 - 1;
+        assert_eq!(Some(rows), finished.summary["ticks"].as_u64().map(|ticks| 14 * (ticks + 1)), "{signal}");
+        assert!(rows > 14, "{signal}");
     }
 }
 
 #[test]
-fn an_interrupt_between_two_real_time_ticks_does_not_wait_for_the_next() {
-    let mut run = Run::start("agent", "--scenario two_setpoint --real-time --relay");
+fn an_interrupt_between_two_real_time_ticks_ends_the_run() {
+    let mut run = Run::start(Robots::Real, "2 --real-time --set model.sample_time=5");
     run.wait_until_driving();
     run.signal("INT");
     let finished = run.finish();
@@ -31,7 +33,7 @@ fn an_interrupt_between_two_real_time_ticks_does_not_wait_for_the_next() {
 fn an_interrupt_during_the_start_leaves_nothing() {
     // The start of 30 robots takes a few hundred milliseconds: hit it everywhere, the first instants above all.
     for milliseconds in [0, 1, 2, 3, 5, 8, 12, 20, 30, 50, 80, 120, 180, 250] {
-        let run = Run::start("agent", "--scenario ring:30 --to-the-end --max-ticks 10000000");
+        let run = Run::start(Robots::Real, &format!("30 {ENDLESS}"));
         sleep(Duration::from_millis(milliseconds));
         run.signal(if milliseconds % 2 == 0 { "INT" } else { "TERM" });
         let finished = run.finish();

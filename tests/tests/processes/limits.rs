@@ -1,21 +1,21 @@
 //! Teams of every size that is promised, and clear errors beyond.
 
 use std::process::Command;
-use tests::{Run, program};
+use tests::{ENDLESS, Robots, Run, program};
 
 #[test]
 fn teams_from_one_to_a_hundred_robots_drive() {
-    for (robots, exchange) in [(1, ""), (2, ""), (32, ""), (50, ""), (100, "--relay")] {
-        let run = Run::start("agent", &format!("--scenario ring:{robots} --max-ticks 20 --to-the-end {exchange}"));
+    for (robots, exchange) in [(1, "peer"), (2, "peer"), (32, "peer"), (50, "relay"), (100, "relay")] {
+        let run = Run::start(Robots::Real, &format!("{robots} --max-ticks 10 --exchange {exchange}"));
         let finished = run.finish();
         assert_eq!(finished.status.code(), Some(1), "{robots} robots: {finished:?}");
-        assert_eq!(finished.steps.lines().count(), 20 * robots, "{robots} robots: {}", finished.stdout);
+        assert_eq!(finished.trajectory.lines().count(), 1 + 11 * robots, "{robots} robots");
     }
 }
 
 #[test]
 fn a_robot_that_does_not_exist_is_refused() {
-    let mut run = Run::start("agent", "--scenario two_setpoint --to-the-end --max-ticks 10000000");
+    let mut run = Run::start(Robots::Real, &format!("2 {ENDLESS}"));
     run.wait_until_driving();
     let output = Command::new(program("agent")).arg("--run").arg(&run.folder).args(["--robot", "2"]).output().unwrap();
     let message = String::from_utf8_lossy(&output.stderr).into_owned();
@@ -35,7 +35,7 @@ fn a_robot_without_a_run_says_what_is_missing() {
 
 #[test]
 fn a_robot_of_a_run_that_has_ended_says_so() {
-    let mut run = Run::start("agent", "--scenario two_setpoint");
+    let mut run = Run::start(Robots::Real, "2");
     run.wait();
     let output = Command::new(program("agent")).arg("--run").arg(&run.folder).args(["--robot", "0"]).output().unwrap();
     let message = String::from_utf8_lossy(&output.stderr).into_owned();

@@ -1,43 +1,57 @@
 //! Peer, relay, a busy machine and the team in one process give the same bytes.
 
 use agent::team::Team;
+use coordinator::record::trajectory::{HEADER, push_end, push_tick};
 use shared::horizon_source::HorizonSource;
 use shared::params::Profile;
-use std::fmt::Write;
 use std::process::{Child, Command, Stdio};
-use tests::Run;
+use tests::{Robots, Run};
 
-/// What the conductor writes, from the team in this process.
-fn in_process(scenario: &str, horizon: &str, ticks: u64) -> String {
-    let (scenario, params) = shared::scenario::set_up(Some(scenario), None, Profile::Safe, &[]).unwrap();
+/// The trajectory of the team in this process.
+fn in_process(scenario: &str, horizon: &str, profile: Profile, ticks: u64) -> String {
+    let (scenario, params) = shared::scenario::set_up(Some(scenario), None, profile, &[]).unwrap();
     let spec = horizon.parse().unwrap();
     let source = HorizonSource::new(&spec, scenario.robots.len(), 7, params.horizon.jitter).unwrap();
     let mut team = Team::new(&scenario, &params, 7);
-    let mut text = String::new();
+    let (mut text, mut positions) = (format!("{HEADER}\n"), Vec::new());
     for tick in 0..ticks {
-        for (robot, step) in team.step(|robot| source.horizon(robot, tick)).iter().enumerate() {
-            let (p, u) = (step.next_position, step.input);
-            writeln!(text, "{tick},{robot},{:?},{:?},{:?},{:?},{}", p.x, p.y, u.x, u.y, step.horizon).unwrap();
-        }
+        let steps = team.step(|robot| source.horizon(robot, tick));
+        push_tick(&mut text, tick, steps);
+        positions = steps.iter().map(|step| step.next_position).collect();
     }
+    push_end(&mut text, ticks, &positions);
     text
 }
 
-fn processes(scenario: &str, horizon: &str, ticks: u64, exchange: &str) -> String {
-    let arguments = format!("--scenario {scenario} --horizon {horizon} --max-ticks {ticks} --to-the-end {exchange}");
-    let finished = Run::start("agent", &arguments).finish();
-    assert_eq!(finished.status.code(), Some(1), "{finished:?}"); // the ticks were used up
-    finished.steps
+/// The trajectory of real processes.
+fn processes(scenario: &str, horizon: &str, profile: Profile, ticks: u64, exchange: &str) -> String {
+    let finished = Run::start(
+        Robots::Real,
+        &format!(
+            "--scenario {scenario} --horizon {horizon} --profile {profile} --seed 7 --max-ticks {ticks} \
+             --exchange {exchange}"
+        ),
+    )
+    .finish();
+    assert_eq!(finished.status.code(), Some(1), "the ticks are too few to arrive: {finished:?}");
+    finished.trajectory
 }
 
 #[test]
 fn peer_and_relay_do_what_one_process_does() {
-    for (scenario, horizon) in [("ex14_d", "random:3"), ("four_gate", "fixed:9,40,20,1"), ("antipodal32", "fixed:20")] {
-        let expected = in_process(scenario, horizon, 120);
-        for exchange in ["", "--relay"] {
-            let steps = processes(scenario, horizon, 120, exchange);
-            let differs = steps.lines().zip(expected.lines()).find(|(one, other)| one != other);
-            assert!(steps == expected, "{scenario} {exchange}: {differs:?}");
+    let cases = [
+        ("ex14_d", "random:3", Profile::Safe, 80),
+        ("ex14_b", "random:4", Profile::Paper, 80),
+        ("four_gate", "fixed:9,40,20,1", Profile::Paper, 120),
+        ("two_setpoint", "fixed:9,40", Profile::Safe, 60),
+        ("antipodal32", "fixed:20", Profile::Safe, 60),
+    ];
+    for (scenario, horizon, profile, ticks) in cases {
+        let expected = in_process(scenario, horizon, profile, ticks);
+        for exchange in ["peer", "relay"] {
+            let found = processes(scenario, horizon, profile, ticks, exchange);
+            let differs = found.lines().zip(expected.lines()).find(|(one, other)| one != other);
+            assert!(found == expected, "{scenario} {exchange}: {differs:?}");
         }
     }
 }
@@ -61,10 +75,10 @@ impl Drop for Busy {
 
 #[test]
 fn a_busy_machine_changes_no_byte() {
-    let calm = in_process("ex14_d", "random:5", 150);
+    let calm = in_process("ex14_d", "random:5", Profile::Safe, 80);
     let cores = std::thread::available_parallelism().map_or(2, usize::from);
     let _busy: Vec<Busy> = (0..cores).map(|_| Busy::new()).collect();
-    for exchange in ["", "--relay"] {
-        assert!(processes("ex14_d", "random:5", 150, exchange) == calm, "{exchange}");
+    for exchange in ["peer", "relay"] {
+        assert!(processes("ex14_d", "random:5", Profile::Safe, 80, exchange) == calm, "{exchange}");
     }
 }
