@@ -1,7 +1,7 @@
 //! L D L' of the small matrix of the active rows, grown row by row; a dependent row is refused.
 
 /// Most rows in one active set; a QP that needs more is left to the next solver.
-pub(super) const MAX_ACTIVE: usize = 64;
+pub(super) const MAX_ACTIVE: usize = 96;
 
 /// The factor; `MAX_ACTIVE^2` numbers, allocated once.
 #[derive(Clone, Debug)]
