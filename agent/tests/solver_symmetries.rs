@@ -46,7 +46,7 @@ fn samples() -> impl Strategy<Value = Sample> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(400))]
+    #![proptest_config(ProptestConfig { cases: 400, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn a_shift_of_the_world_changes_no_input(sample in samples(), x in -50.0..50.0f64, y in -50.0..50.0f64) {
