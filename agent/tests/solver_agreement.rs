@@ -56,7 +56,7 @@ fn family_agrees(family: Family) -> Tally {
     for n in HORIZONS {
         for rows in [1, 3, 10] {
             for index in 0..SAMPLES {
-                let horizon = Horizon::new(n).unwrap();
+                let horizon = Horizon::saturating(n as i64);
                 let sample = Sample::new(family, horizon, rows, n * 100 + rows as u64, index);
                 let mut start = Plan::default();
                 closed_form.solve(&sample.problem(), &mut start, &mut [Position::zeros(); MAX_HORIZON]);

@@ -193,3 +193,40 @@ impl Triplets {
         CscMatrix::new_from_triplets(rows, columns, self.rows, self.columns, self.values)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mpc::kkt;
+    use crate::mpc::sample::{Family, Sample};
+    use shared::horizon::Horizon;
+
+    fn sample(family: Family) -> Sample {
+        Sample::new(family, Horizon::new(20).unwrap(), 3, 4, 1)
+    }
+
+    #[test]
+    fn answers_are_exact_with_polish_and_rough_without() {
+        let sample = sample(Family::Safe);
+        let (mut exact, mut rough) = (Plan::default(), Plan::default());
+        let mut solver = Clarabel::run_time();
+        solver.solve(&sample.problem(), &mut exact).unwrap();
+        assert!(kkt::residual(&sample.problem(), &exact, solver.multipliers()).largest() < 1e-11);
+        let effort = Clarabel::unpolished(1e-9).solve(&sample.problem(), &mut rough).unwrap();
+        assert!(rough.largest_difference(&exact) < 1e-3 && (3..40).contains(&effort.iterations));
+    }
+
+    #[test]
+    fn an_infeasible_problem_is_named_so() {
+        let outcome = Clarabel::run_time().solve(&sample(Family::Opposed).problem(), &mut Plan::default());
+        assert_eq!(outcome, Err(SolveError::Infeasible));
+    }
+
+    #[test]
+    fn an_ill_posed_problem_is_given_up() {
+        let mut sample = sample(Family::Soft);
+        sample.rows[0].normal.x = f64::NAN;
+        let outcome = Clarabel::run_time().solve(&sample.problem(), &mut Plan::default());
+        assert_eq!(outcome, Err(SolveError::GaveUp { iterations: 0 }));
+    }
+}

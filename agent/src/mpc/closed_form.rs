@@ -70,3 +70,60 @@ impl ClosedForm {
 pub fn satisfies_rows(problem: &Problem<'_>, states: &[Position; MAX_HORIZON]) -> bool {
     problem.rows.iter().all(|row| row.gap(&states[row.step - 1]) >= -ROW_TOLERANCE)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mpc::problem::Row;
+    use crate::mpc::sample::{Family, Sample};
+    use crate::mpc::stacked::Stacked;
+    use shared::horizon::Horizon;
+
+    fn solved(problem: &Problem<'_>) -> (Plan, bool) {
+        let mut plan = Plan::default();
+        let mut states = [Position::zeros(); MAX_HORIZON];
+        let satisfied = ClosedForm::new(0.2, 5.0, 10.0).solve(problem, &mut plan, &mut states);
+        (plan, satisfied)
+    }
+
+    #[test]
+    fn gains_follow_the_recursion_by_hand() {
+        let gains = ClosedForm::new(0.2, 5.0, 10.0).gains;
+        // S_0 = 10: K_1 = 2 / 20.4; S_1 = 10 + 200 / 20.4.
+        assert!((gains[0] - 2.0 / 20.4).abs() < 1e-15);
+        let second = 10.0 + 200.0 / 20.4;
+        assert!((gains[1] - 0.2 * second / (20.0 + 0.04 * second)).abs() < 1e-15);
+    }
+
+    #[test]
+    fn without_active_bounds_it_solves_the_stacked_normal_equations() {
+        for n in [1, 7, 20, 49] {
+            let sample = Sample::new(Family::Hard, Horizon::new(n).unwrap(), 0, 1, n);
+            let problem = Problem { max_speed: 1e3, ..sample.problem() };
+            let dense = Stacked::new(&problem);
+            let exact = dense.hessian.cholesky().unwrap().solve(&-dense.gradient);
+            let (plan, satisfied) = solved(&problem);
+            assert!(satisfied);
+            for l in 0..n as usize {
+                assert!((plan.inputs[l].x - exact[2 * l]).abs() < 1e-11);
+                assert!((plan.inputs[l].y - exact[2 * l + 1]).abs() < 1e-11);
+            }
+        }
+    }
+
+    #[test]
+    fn rows_are_judged_at_their_own_step() {
+        let sample = Sample::new(Family::Hard, Horizon::new(10).unwrap(), 0, 1, 0);
+        let problem = sample.problem();
+        let (plan, _) = solved(&problem);
+        let mut states = [Position::zeros(); MAX_HORIZON];
+        plan.roll_out(&problem, &mut states);
+        let normal = Position::new(0.6, 0.8);
+        for (room, expected) in [(1e-3, true), (0.0, true), (-1e-9, false)] {
+            let row = Row { step: 4, normal, offset: normal.dot(&states[3]) - room, hard: false };
+            assert_eq!(solved(&Problem { rows: &[row], ..problem }).1, expected, "room {room}");
+        }
+        let undefined = Row { step: 4, normal, offset: f64::NAN, hard: false };
+        assert!(!solved(&Problem { rows: &[undefined], ..problem }).1);
+    }
+}

@@ -76,3 +76,67 @@ fn row_residual(row: &Row, price: &SlackPrice, gap: f64, multiplier: f64, proble
 fn worse(a: f64, b: f64) -> f64 {
     if a.is_nan() || a > b { a } else { b }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mpc::problem::QpSolver;
+    use crate::mpc::sample::{Family, Sample};
+    use crate::mpc::structured::Structured;
+    use shared::horizon::Horizon;
+
+    fn optimum(sample: &Sample) -> (Plan, Vec<f64>) {
+        let (mut solver, mut plan) = (Structured::default(), Plan::default());
+        solver.solve(&sample.problem(), &mut plan).unwrap();
+        (plan, solver.multipliers().to_vec())
+    }
+
+    #[test]
+    fn an_error_of_an_input_shows_in_its_own_size() {
+        for family in [Family::Soft, Family::Safe] {
+            let sample = Sample::new(family, Horizon::new(20).unwrap(), 4, 1, 2);
+            let (mut plan, multipliers) = optimum(&sample);
+            assert!(residual(&sample.problem(), &plan, &multipliers).largest() < 1e-11);
+            for error in [1e-8, 1e-4] {
+                plan.inputs[3].x -= error;
+                let found = residual(&sample.problem(), &plan, &multipliers).largest();
+                assert!(found > 0.1 * error && found < 20.0 * error, "{family:?} {error}: {found}");
+                plan.inputs[3].x += error;
+            }
+        }
+    }
+
+    #[test]
+    fn wrong_multipliers_show() {
+        let sample = Sample::new(Family::Soft, Horizon::new(20).unwrap(), 3, 1, 2);
+        let (plan, multipliers) = optimum(&sample);
+        let active = (0..3).max_by(|&a, &b| multipliers[a].total_cmp(&multipliers[b])).unwrap();
+        let with = |value: f64| {
+            let mut wrong = multipliers.clone();
+            wrong[active] = value;
+            residual(&sample.problem(), &plan, &wrong).largest()
+        };
+        assert!(with(0.0) > 1e-3 && with(multipliers[active] * 1.01) > 1e-5);
+        assert!(with(-1.0) > 1e-4 && with(f64::NAN).is_nan());
+    }
+
+    #[test]
+    fn each_kind_of_row_has_its_own_graph_of_gap_and_multiplier() {
+        let sample = Sample::new(Family::Soft, Horizon::new(5).unwrap(), 1, 1, 0);
+        let problem = sample.problem();
+        let at = |hard: bool, gap: f64, multiplier: f64| {
+            row_residual(&Row { hard, ..problem.rows[0] }, &problem.slack, gap, multiplier, &problem)
+        };
+        for hard in [false, true] {
+            assert_eq!(at(hard, 0.3, 0.0), 0.0);
+            assert_eq!(at(hard, 0.0, 40.0), 0.0);
+            assert_eq!(at(hard, -0.3, 0.0), 0.3);
+            assert!(at(hard, 0.3, 400.0) > 0.2);
+            assert!(at(hard, f64::NAN, 0.0).is_nan());
+        }
+        // Beyond the linear price of 1e5 a soft row gives way by 1 mm per unit of 1e3 / m.
+        assert_eq!(at(true, 0.0, 2e5), 0.0);
+        assert!((at(false, 0.0, 1e5 + 2.0) - 2e-3).abs() < 1e-9);
+        assert!(at(false, -2e-3, 1e5 + 2.0) < 1e-9);
+    }
+}

@@ -206,3 +206,43 @@ enum Change {
     Bound(Bound),
     Row(RowState),
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mpc::clarabel::Clarabel;
+    use crate::mpc::problem::QpSolver;
+    use crate::mpc::sample::{Family, Sample};
+    use shared::horizon::Horizon;
+
+    #[test]
+    fn a_rough_answer_becomes_exact() {
+        for family in [Family::Hard, Family::Soft, Family::Safe, Family::Degenerate] {
+            for index in 0..20 {
+                let sample = Sample::new(family, Horizon::new(20).unwrap(), 4, 8, index);
+                let problem = sample.problem();
+                let mut solver = Clarabel::unpolished(1e-5);
+                let mut plan = Plan::default();
+                if solver.solve(&problem, &mut plan).is_err() {
+                    continue;
+                }
+                let mut multipliers = solver.multipliers().to_vec();
+                let before = kkt::residual(&problem, &plan, &multipliers).largest();
+                let after = polish(&problem, &mut plan, &mut multipliers).unwrap();
+                assert!(after.largest() <= ACCEPTED_RESIDUAL && before > 1e3 * after.largest());
+                assert_eq!(after, kkt::residual(&problem, &plan, &multipliers));
+            }
+        }
+    }
+
+    #[test]
+    fn a_plan_that_nothing_can_repair_stays_as_it_is() {
+        let sample = Sample::new(Family::Opposed, Horizon::new(10).unwrap(), 1, 8, 0);
+        let mut plan = Plan::default();
+        plan.inputs[2].x = 0.25;
+        let before = plan.clone();
+        let mut multipliers = [3.0, 4.0];
+        assert!(polish(&sample.problem(), &mut plan, &mut multipliers).is_none());
+        assert_eq!((plan.inputs, multipliers), (before.inputs, [3.0, 4.0]));
+    }
+}

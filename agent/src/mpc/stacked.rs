@@ -66,3 +66,58 @@ impl Stacked {
         (line, limit)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mpc::problem::Plan;
+    use crate::mpc::sample::{Family, Sample};
+    use shared::horizon::{Horizon, MAX_HORIZON};
+    use shared::{Input, Position};
+
+    fn example() -> (Sample, Plan) {
+        let mut plan = Plan::default();
+        for (l, input) in plan.inputs[..12].iter_mut().enumerate() {
+            *input = Input::new((l as f64).sin(), (l as f64 * 2.0).cos());
+        }
+        (Sample::new(Family::Safe, Horizon::new(12).unwrap(), 5, 2, 0), plan)
+    }
+
+    fn stacked(plan: &Plan) -> DVector<f64> {
+        DVector::from_iterator(24, plan.inputs[..12].iter().flat_map(|u| [u.x, u.y]))
+    }
+
+    #[test]
+    fn free_and_forced_response_add_up_to_the_model() {
+        let (sample, plan) = example();
+        let problem = sample.problem();
+        let mut states = [Position::zeros(); MAX_HORIZON];
+        plan.roll_out(&problem, &mut states);
+        let position = DVector::from_column_slice(problem.position.as_slice());
+        let predicted = free_response(12) * position + forced_response(12, problem.sample_time) * stacked(&plan);
+        for l in 0..12 {
+            assert!((predicted[2 * l] - states[l].x).abs() < 1e-12);
+            assert!((predicted[2 * l + 1] - states[l].y).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn the_dense_cost_and_rows_are_those_of_the_problem() {
+        let (sample, plan) = example();
+        let problem = sample.problem();
+        let dense = Stacked::new(&problem);
+        let mut states = [Position::zeros(); MAX_HORIZON];
+        plan.roll_out(&problem, &mut states);
+        let excess = &dense.rows * stacked(&plan) - &dense.limits;
+        for (row, excess) in problem.rows.iter().zip(excess.iter()) {
+            assert!((row.gap(&states[row.step - 1]) + excess).abs() < 1e-12);
+        }
+        // Up to the constant, which cancels in a difference.
+        let no_rows = Problem { rows: &[], ..problem };
+        let quadratic = |u: &DVector<f64>| 0.5 * u.dot(&(&dense.hessian * u)) + dense.gradient.dot(u);
+        let still = Plan::default();
+        let dense_difference = quadratic(&stacked(&plan)) - quadratic(&stacked(&still));
+        let difference = plan.cost(&no_rows) - still.cost(&no_rows);
+        assert!((dense_difference - difference).abs() < 1e-9 * difference.abs().max(1.0));
+    }
+}

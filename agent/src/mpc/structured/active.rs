@@ -3,6 +3,7 @@
 use super::super::problem::{Plan, Problem};
 use super::chain::Bounds;
 use super::equality::Equality;
+use super::small_factor::MAX_ACTIVE;
 use shared::horizon::MAX_HORIZON;
 
 /// A row in an active set.
@@ -22,6 +23,9 @@ const INPUT_TOLERANCE: f64 = 1e-11;
 const GAP_TOLERANCE: f64 = 1e-12;
 /// Wrong-signed multiplier that counts, as the change of an input, m/s, per unit of the largest.
 const DUAL_TOLERANCE: f64 = 1e-12;
+
+/// Rows that one block step adds at most: most of a crowd's rows are met once a few are.
+const MAX_NEW_ROWS: usize = 16;
 
 /// An active set.
 #[derive(Clone, Debug, PartialEq)]
@@ -79,7 +83,7 @@ impl ActiveSet {
         }
     }
 
-    /// Adds every constraint that the solution violates; returns the most violated one
+    /// Adds every constraint that the solution violates (of the rows, [`MAX_NEW_ROWS`] at most); returns the most violated one
     /// and by how much, m/s (rows: metres per sample time).
     pub(super) fn add_violated(&mut self, problem: &Problem<'_>, solution: &Equality) -> Option<(Constraint, f64)> {
         let mut worst = None;
@@ -98,11 +102,14 @@ impl ActiveSet {
                 }
             }
         }
+        let full = MAX_ACTIVE.min(self.order.len() + MAX_NEW_ROWS);
         for (index, row) in problem.rows.iter().enumerate() {
             let excess = -row.gap(&solution.chain.states[row.step - 1]);
             if excess > GAP_TOLERANCE && self.rows[index] == RowState::Open {
-                self.rows[index] = RowState::Tight;
-                self.order.push(index);
+                if self.order.len() < full {
+                    self.rows[index] = RowState::Tight;
+                    self.order.push(index);
+                }
                 if excess > most * problem.sample_time {
                     most = excess / problem.sample_time;
                     worst = Some(Constraint::Row(index));

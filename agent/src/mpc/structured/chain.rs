@@ -153,3 +153,114 @@ impl Chain {
             + (self.cost_to_go[l].component_mul(&self.states[l]) - self.pull[l]) * self.sample_time
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mpc::sample::{Family, Sample};
+    use crate::mpc::stacked::Stacked;
+    use nalgebra::DVector;
+    use shared::horizon::Horizon;
+
+    const STEPS: usize = 15;
+
+    fn fixed() -> Bounds {
+        let mut fixed = [[0; 2]; MAX_HORIZON];
+        for l in [0, 1, 2, 7, 14] {
+            fixed[l][l % 2] = if l % 3 == 0 { 1 } else { -1 };
+        }
+        fixed[7] = [1, -1];
+        fixed
+    }
+
+    /// Chain of a sample with some inputs fixed, its source and its drift.
+    fn chain(sample: &Sample) -> (Chain, Track, Track) {
+        let problem = sample.problem();
+        let mut chain = Chain::new();
+        chain.reset(&problem);
+        chain.factor(&fixed());
+        let source = problem.target.states.map(|target| target * (2.0 * problem.state_weight));
+        let mut drift = problem.target.inputs;
+        for (drift, fixed) in drift.iter_mut().zip(fixed()) {
+            for (drift, fixed) in drift.iter_mut().zip(fixed).filter(|(_, fixed)| *fixed != 0) {
+                *drift = f64::from(fixed) * problem.max_speed;
+            }
+        }
+        (chain, source, drift)
+    }
+
+    fn sample() -> Sample {
+        Sample::new(Family::Safe, Horizon::new(STEPS as u64).unwrap(), 0, 6, 0)
+    }
+
+    #[test]
+    fn fixed_inputs_keep_their_value_and_free_ones_have_no_gradient() {
+        let sample = sample();
+        let problem = sample.problem();
+        let (mut chain, mut source, drift) = chain(&sample);
+        source[4] += Vector2::new(30.0, -20.0); // a force, or nothing would be to do
+        chain.solve(problem.position, &source, &drift);
+        let dense = Stacked::new(&problem);
+        let inputs = DVector::from_iterator(2 * STEPS, chain.inputs[..STEPS].iter().flat_map(|u| [u.x, u.y]));
+        let mut gradient = &dense.hessian * &inputs + &dense.gradient;
+        for l in 0..=4 {
+            gradient[2 * l] -= 30.0 * problem.sample_time;
+            gradient[2 * l + 1] += 20.0 * problem.sample_time;
+        }
+        for l in 0..STEPS {
+            for axis in 0..2 {
+                let expected = gradient[2 * l + axis];
+                if fixed()[l][axis] == 0 {
+                    assert!(expected.abs() < 1e-10, "step {l}: {expected}");
+                } else {
+                    assert_eq!(inputs[2 * l + axis], f64::from(fixed()[l][axis]) * problem.max_speed);
+                    let found = chain.gradient(l, problem.target.inputs[l])[axis];
+                    assert!((found - expected).abs() < 1e-9, "step {l}: {found} {expected}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn influences_are_what_unit_forces_do() {
+        let sample = sample();
+        let (mut chain, ..) = chain(&sample);
+        let zero = [Vector2::zeros(); MAX_HORIZON];
+        for s in 1..=STEPS {
+            let mut force = zero;
+            force[s - 1] = Vector2::new(1.0, 1.0);
+            chain.solve(Vector2::zeros(), &force, &zero);
+            for p in 1..=STEPS {
+                assert!((chain.states[p - 1] - chain.influence(p, s)).amax() < 1e-15);
+            }
+            let mut push = zero;
+            push[s - 1] = Vector2::new(1.0, 1.0) / (2.0 * sample.problem().input_weight);
+            chain.solve(Vector2::zeros(), &zero, &push);
+            for p in 1..=STEPS {
+                for axis in 0..2 {
+                    if fixed()[s - 1][axis] == 0 {
+                        let expected = chain.input_influence(p, s - 1)[axis];
+                        assert!((chain.states[p - 1][axis] - expected).abs() < 1e-14);
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn factors_changed_step_by_step_are_those_made_at_once() {
+        let sample = sample();
+        let (mut fresh, ..) = chain(&sample);
+        let mut changed = Chain::new();
+        changed.reset(&sample.problem());
+        let mut bounds = [[0; 2]; MAX_HORIZON];
+        for l in [14, 3, 7, 0, 1, 2] {
+            bounds[l] = [1, 1];
+            changed.factor(&bounds);
+        }
+        changed.factor(&fixed());
+        fresh.factor(&fixed());
+        assert_eq!(changed.response, fresh.response);
+        assert_eq!(changed.decay, fresh.decay);
+    }
+}

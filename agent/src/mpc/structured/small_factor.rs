@@ -1,7 +1,7 @@
 //! L D L' of the small matrix of the active rows, grown row by row; a dependent row is refused.
 
 /// Most rows in one active set; a QP that needs more is left to the next solver.
-pub(super) const MAX_ACTIVE: usize = 64;
+pub(super) const MAX_ACTIVE: usize = 96;
 
 /// The factor; `MAX_ACTIVE^2` numbers, allocated once.
 #[derive(Clone, Debug)]
@@ -69,5 +69,42 @@ impl SmallFactor {
                 right[k] -= row[k] * right[i];
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{DMatrix, DVector};
+
+    fn push(factor: &mut SmallFactor, matrix: &DMatrix<f64>, members: &[usize], row: usize) -> bool {
+        let entries = factor.next_row();
+        for (entry, &column) in entries.iter_mut().zip(members) {
+            *entry = matrix[(row, column)];
+        }
+        entries[members.len()] = matrix[(row, row)];
+        factor.push(1e-10)
+    }
+
+    #[test]
+    fn it_solves_what_it_took_and_refuses_dependent_rows() {
+        let roots = DMatrix::from_fn(6, 6, |i, j| ((3 * i * i + 5 * i * j + 7 * j * j) as f64).sin());
+        let mut roots = roots.insert_row(3, 0.0);
+        let sum = roots.row(0) + roots.row(2) * 2.0;
+        roots.set_row(3, &sum); // row 3 depends on rows 0 and 2
+        let matrix = &roots * roots.transpose();
+        let mut factor = SmallFactor::new();
+        let mut members = Vec::new();
+        for row in 0..7 {
+            if push(&mut factor, &matrix, &members, row) {
+                members.push(row);
+            }
+        }
+        assert_eq!(members, [0, 1, 2, 4, 5, 6]);
+        let small = matrix.select_rows(&members).select_columns(&members);
+        let right = DVector::from_fn(members.len(), |i, _| i as f64 - 1.5);
+        let mut solution = right.clone();
+        factor.solve(solution.as_mut_slice());
+        assert!((small * solution - right).amax() < 1e-8);
     }
 }
