@@ -60,7 +60,9 @@ impl VodcaController {
         let hazards = hazards(&self.params, &self.layout, self.robot, view);
         let min_separation = self.params.model.min_separation;
         let vodca = &self.params.vodca;
-        collision_rows(vodca, min_separation, &previous.prediction, view.horizon, hazards, &mut self.rows)
+        let way = (self.layout.set_points[self.robot] - view.position).norm();
+        let turn = reference::turn(vodca, way);
+        collision_rows(vodca, min_separation, turn, &previous.prediction, view.horizon, hazards, &mut self.rows)
     }
 
     /// Rule 4 (memory) and rule 1 (reference).

@@ -94,7 +94,7 @@ impl Case {
             .filter_map(|(_, plan)| Some(Hazard { course: Course::Plan { plan: plan.as_ref()?, age: 0 }, separation }));
         let obstacles = self.obstacles.iter().map(|at| Hazard { course: Course::Still(place(at)), separation });
         let hazards = neighbours.chain(obstacles);
-        collision_rows(&params.vodca, separation, own, self.horizon, hazards, &mut rows);
+        collision_rows(&params.vodca, separation, params.vodca.turn, own, self.horizon, hazards, &mut rows);
         rows
     }
 

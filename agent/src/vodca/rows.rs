@@ -10,10 +10,11 @@ use shared::prediction::Prediction;
 /// Appends the collision rows of one robot and tick to `rows`; returns how many.
 ///
 /// `plan` is the robot's own prediction of tick k - 1 and `horizon` its N_i^k. `hazards` come robots
-/// first (by number), then obstacles: ties go to the lower index.
+/// first (by number), then obstacles: ties go to the lower index. `turn` turns every normal left, rad.
 pub fn collision_rows<'a>(
     vodca: &Vodca,
     min_separation: f64,
+    turn: f64,
     plan: &Prediction,
     horizon: Horizon,
     hazards: impl Iterator<Item = Hazard<'a>> + Clone,
@@ -25,7 +26,7 @@ pub fn collision_rows<'a>(
         BeyondHorizon::Clamp | BeyondHorizon::Skip => plan.horizon().steps(),
     };
     let conflict_with = |hazard: &Hazard<'_>| first_conflict(plan, hazard, vodca.first_compared_step, window);
-    let mut push = |conflict: Conflict| rows.extend(row(vodca, &conflict, horizon));
+    let mut push = |conflict: Conflict| rows.extend(row(vodca, turn, &conflict, horizon));
     match vodca.rows {
         RowChoice::Each => hazards.filter_map(|hazard| conflict_with(&hazard)).for_each(&mut push),
         RowChoice::First => {
@@ -62,7 +63,7 @@ fn nearby(plan: &Prediction, hazard: &Hazard<'_>, step: usize, reach: f64) -> Op
 /// The row of one conflict: b' x[p] >= c with b turned left by `turn`, normalised. With c = r |b| + b' o
 /// the half plane touches the circle around the hazard; without turn that is the paper's
 /// c = r d - d^2 + b' x^_i[k_c|k-1].
-fn row(vodca: &Vodca, conflict: &Conflict, horizon: Horizon) -> Option<Row> {
+fn row(vodca: &Vodca, turn: f64, conflict: &Conflict, horizon: Horizon) -> Option<Row> {
     if conflict.distance < NO_DIRECTION {
         return None;
     }
@@ -75,7 +76,7 @@ fn row(vodca: &Vodca, conflict: &Conflict, horizon: Horizon) -> Option<Row> {
         BeyondHorizon::Skip if wanted > last => return None,
         _ => wanted.min(last),
     };
-    let normal = turned((conflict.own - conflict.hazard) / conflict.distance, vodca.turn);
+    let normal = turned((conflict.own - conflict.hazard) / conflict.distance, turn);
     // Fused on one axis only: exact mirror images (two_setpoint) would stay mirror images for ever in
     // arithmetic that treats both axes alike; the last bit breaks the tie, as rounding did in the paper.
     let along = normal.x.mul_add(conflict.hazard.x, normal.y * conflict.hazard.y);

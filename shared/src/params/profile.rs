@@ -61,6 +61,9 @@ impl Params {
                 tie: Tie::Nearest,
                 nearby_factor: 1.5,
                 turn: 0.0,
+                turn_near: 0.0,
+                near_start: 1.5,
+                near_end: 4.5,
                 softness: Softness::Hard,
                 infeasible: Infeasible::Relax,
                 slack_linear: 1e5,
@@ -83,6 +86,7 @@ impl Params {
         params.mpc.reference = Reference::Straight;
         params.vodca.rows = RowChoice::Each;
         params.vodca.turn = 0.35;
+        params.vodca.turn_near = 0.35;
         params.vodca.softness = Softness::Soft;
         params.aim.angle = 0.35;
         params.give_way.radius = 1.5;
