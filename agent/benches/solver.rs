@@ -61,12 +61,32 @@ fn solvers(criterion: &mut Criterion) {
     }
 }
 
+/// What it costs that the horizon changes at every tick: uniform over 1..=49 beside their mean.
+fn horizons(criterion: &mut Criterion) {
+    let mut states = [Position::zeros(); MAX_HORIZON];
+    let mut plan = Plan::default();
+    let mut closed_form = ClosedForm::new(0.2, 5.0, 10.0);
+    let mut structured = Structured::default();
+    for (name, changing) in [("fixed 25", false), ("changing 1..=49", true)] {
+        let problems: Vec<Sample> = (0..980)
+            .map(|index| {
+                let steps = if changing { 1 + (index * 18) % 49 } else { 25 };
+                Sample::new(Family::Safe, Horizon::saturating(steps), 3, 2026, index as u64)
+            })
+            .collect();
+        measure(criterion, &format!("structured, safe, 3 rows, horizon {name}"), &problems, |problem| {
+            closed_form.solve(problem, &mut plan, &mut states);
+            let _ = black_box(structured.solve(problem, &mut plan));
+        });
+    }
+}
+
 criterion_group! {
     name = benches;
     config = Criterion::default()
         .sample_size(20)
         .warm_up_time(Duration::from_millis(300))
         .measurement_time(Duration::from_secs(1));
-    targets = solvers
+    targets = solvers, horizons
 }
 criterion_main!(benches);

@@ -1,7 +1,9 @@
 //! The robot's quadratic program and the ladder of its solvers.
 //!
-//! [`problem`] states the program once; every solver builds what suits it. [`stacked`] is the
-//! paper's formulation, which the tests compare against.
+//! [`problem`] states the program once; every solver builds what suits it. [`ladder`] asks
+//! [`closed_form`], then [`structured`], then [`clarabel`] (whose answers [`polish`] makes exact).
+//! [`kkt`] judges any answer from the problem alone, [`stacked`] is the paper's formulation, and
+//! [`sample`] makes random problems: all three serve tests and comparisons as well.
 
 pub mod clarabel;
 pub mod closed_form;

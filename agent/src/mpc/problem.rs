@@ -38,7 +38,7 @@ pub struct SlackPrice {
 pub struct Problem<'a> {
     /// N.
     pub horizon: Horizon,
-    /// x[0], the measured position, m.
+    /// `x[0]`, the measured position, m.
     pub position: Position,
     /// What the plan is drawn to.
     pub target: &'a Target,
@@ -81,7 +81,7 @@ pub struct Target {
     pub kind: TargetKind,
     /// Target of x[l + 1] at index l; N entries are used.
     pub states: [Position; MAX_HORIZON],
-    /// Target of u[l] at index l; N entries are used.
+    /// Target of `u[l]` at index l; N entries are used.
     pub inputs: [Input; MAX_HORIZON],
 }
 
@@ -90,14 +90,14 @@ pub struct Target {
 pub enum TargetKind {
     /// All states the set-point, all inputs zero (the paper).
     SetPoint,
-    /// A reference that starts at x[0], obeys the model and the bounds: it is the free optimum itself.
+    /// A reference that starts at `x[0]`, obeys the model and the bounds: it is the free optimum itself.
     Feasible,
 }
 
 /// A solver's answer: `inputs[..N]`.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    /// u[l] at index l, m/s; entries from N on are zero.
+    /// `u[l]` at index l, m/s; entries from N on are zero.
     pub inputs: [Input; MAX_HORIZON],
 }
 

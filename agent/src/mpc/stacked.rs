@@ -1,7 +1,7 @@
 //! The paper's stacked form of the QP, dense: the reference that other formulations are tested
 //! against, and the polish of Clarabel's answers.
 //!
-//! `X = F x + Phi U` with X = (x[1], ..., x[N]) and U = (u[0], ..., u[N-1]) stacked, axes
+//! `X = F x + Phi U` with `X = (x[1], ..., x[N])` and `U = (u[0], ..., u[N-1])` stacked, axes
 //! interleaved (paper, section III-A); collision rows are `A_coll U <= b_coll` (paper, equation
 //! "collision avoidance constraints").
 
