@@ -4,7 +4,7 @@ use crate::mpc::problem::{Target, TargetKind};
 use crate::vodca::conflict::toward;
 use crate::vodca::rows::turned;
 use shared::horizon::{Horizon, MAX_HORIZON};
-use shared::params::{Aim, Vodca};
+use shared::params::Aim;
 use shared::{Input, Position};
 
 /// An empty target to be filled at every tick.
@@ -43,21 +43,9 @@ pub fn straight(target: &mut Target, from: Position, to: Position, horizon: Hori
 /// a = phi s clip((|g - p| - fade_start) / (fade_end - fade_start), 0, 1). `in_conflict` is s, 0..=1.
 pub fn aim(aim: &Aim, in_conflict: f64, position: Position, set_point: Position) -> Position {
     let way = set_point - position;
-    let fade = fade(way.norm(), aim.fade_start, aim.fade_end);
+    let fade = ((way.norm() - aim.fade_start) / (aim.fade_end - aim.fade_start)).clamp(0.0, 1.0);
     let angle = aim.angle * in_conflict * fade;
     if angle == 0.0 { set_point } else { position + turned(way, -angle) }
-}
-
-/// The angle by which a robot `way` metres from its set-point turns the normals of its rows left, rad:
-/// `turn_near` where it settles among others, `turn` on the way. Small angles give short paths through
-/// dense traffic; where robots crowd around their set-points they leave deadlocks.
-pub fn turn(vodca: &Vodca, way: f64) -> f64 {
-    vodca.turn_near + (vodca.turn - vodca.turn_near) * fade(way, vodca.near_start, vodca.near_end)
-}
-
-/// 0 up to `start`, 1 from `end`, linear between.
-fn fade(distance: f64, start: f64, end: f64) -> f64 {
-    ((distance - start) / (end - start)).clamp(0.0, 1.0)
 }
 
 #[cfg(test)]
@@ -77,15 +65,6 @@ mod tests {
         }
         assert_eq!(target.states[3], to);
         assert_eq!(target.inputs[5], Input::zeros());
-    }
-
-    #[test]
-    fn normals_turn_more_near_the_set_point() {
-        let vodca = shared::params::Params::safe().vodca;
-        assert_eq!(turn(&vodca, vodca.near_start), vodca.turn_near);
-        assert_eq!(turn(&vodca, vodca.near_end), vodca.turn);
-        let between = turn(&vodca, (vodca.near_start + vodca.near_end) / 2.0);
-        assert!((between - (vodca.turn + vodca.turn_near) / 2.0).abs() < 1e-12);
     }
 
     #[test]

@@ -27,6 +27,7 @@ pub struct VodcaController {
     plan: Plan,
     previous: Option<Previous>,
     in_conflict: f64,
+    lasting_conflict: f64,
 }
 
 /// The robot's own plan of tick k - 1.
@@ -50,6 +51,7 @@ impl VodcaController {
             plan: Plan::default(),
             previous: None,
             in_conflict: 0.0,
+            lasting_conflict: 0.0,
         }
     }
 
@@ -60,15 +62,20 @@ impl VodcaController {
         let hazards = hazards(&self.params, &self.layout, self.robot, view);
         let min_separation = self.params.model.min_separation;
         let vodca = &self.params.vodca;
-        let way = (self.layout.set_points[self.robot] - view.position).norm();
-        let turn = reference::turn(vodca, way);
+        // Small angles give short paths through dense traffic; what they leave stuck, large ones resolve.
+        let turn = vodca.turn + (vodca.turn_lasting - vodca.turn) * self.lasting_conflict;
         collision_rows(vodca, min_separation, turn, &previous.prediction, view.horizon, hazards, &mut self.rows)
     }
 
-    /// Rule 4 (memory) and rule 1 (reference).
-    fn aim(&mut self, view: &View<'_>, rows: usize) {
+    /// Rule 4: how much and how long the robot has been in conflict, two numbers in 0..=1.
+    fn remember(&mut self, rows: usize) {
         let flag = if rows > 0 { 1.0 } else { 0.0 };
         self.in_conflict += self.params.aim.memory * (flag - self.in_conflict);
+        self.lasting_conflict += self.params.vodca.lasting_memory * (flag - self.lasting_conflict);
+    }
+
+    /// Rule 1: the reference, aimed by rule 4.
+    fn aim(&mut self, view: &View<'_>) {
         let set_point = self.layout.set_points[self.robot];
         match self.params.mpc.reference {
             Reference::SetPoint => reference::set_point(&mut self.target, set_point, view.horizon),
@@ -185,7 +192,8 @@ fn bounded(axis: f64, bound: f64) -> f64 {
 impl Controller for VodcaController {
     fn tick(&mut self, view: &View<'_>) -> Decision {
         let rows = self.detect(view);
-        self.aim(view, rows);
+        self.remember(rows);
+        self.aim(view);
         self.bound_cell(view);
         let (level, status) = self.solve(view, rows);
         let (prediction, shielded) = self.publish(view);

@@ -109,7 +109,7 @@ impl PaperSwitches {
         vodca.softness = choose("soft", &self.soft, &[("hard", Softness::Hard), ("soft", Softness::Soft)])?;
         vodca.nearby_factor = self.odca_f;
         vodca.turn = self.bias;
-        vodca.turn_near = self.bias;
+        vodca.turn_lasting = self.bias;
         vodca.slack_linear = self.rho1;
         vodca.slack_quadratic = self.rho2;
         params.cell.enabled = choose("shield", &self.shield, &[("none", false), ("bvc", true)])?;
@@ -130,7 +130,7 @@ impl SafeSwitches {
         params.mpc.state_weight = self.q;
         params.mpc.input_weight = self.w;
         params.vodca.turn = self.theta;
-        params.vodca.turn_near = self.theta;
+        params.vodca.turn_lasting = self.theta;
         params.vodca.slack_linear = self.rho1;
         params.vodca.slack_quadratic = self.rho2;
         params.aim.angle = self.phi;

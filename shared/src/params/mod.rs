@@ -142,12 +142,10 @@ pub struct Vodca {
     pub nearby_factor: f64,
     /// Angle by which a row's normal is turned left, rad; both robots then pass on the right.
     pub turn: f64,
-    /// The same near the set-point, rad.
-    pub turn_near: f64,
-    /// Distance to the set-point up to which `turn_near` holds, m.
-    pub near_start: f64,
-    /// Distance to the set-point from which `turn` holds, m; linear between.
-    pub near_end: f64,
+    /// The same after a long conflict, rad.
+    pub turn_lasting: f64,
+    /// Share of the newest tick in the memory of how long the conflict has lasted.
+    pub lasting_memory: f64,
     /// Hard rows, or soft rows with an exact penalty.
     pub softness: Softness,
     /// What a robot does when its hard rows are infeasible.
@@ -285,15 +283,13 @@ impl Params {
         for (entry, value) in table::values(self) {
             entry.check(&value)?;
         }
-        let (aim, vodca) = (&self.aim, &self.vodca);
-        for (key, end, start_key, start) in [
-            ("aim.fade_end", aim.fade_end, "aim.fade_start", aim.fade_start),
-            ("vodca.near_end", vodca.near_end, "vodca.near_start", vodca.near_start),
-        ] {
-            if end <= start {
-                let allowed = format!("a number above {start_key} = {start}");
-                return Err(Refusal { key, value: end.to_string(), allowed, unit: "m" });
-            }
+        if self.aim.fade_end <= self.aim.fade_start {
+            return Err(Refusal {
+                key: "aim.fade_end",
+                value: self.aim.fade_end.to_string(),
+                allowed: format!("a number above aim.fade_start = {}", self.aim.fade_start),
+                unit: "m",
+            });
         }
         Ok(())
     }

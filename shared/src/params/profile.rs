@@ -61,9 +61,8 @@ impl Params {
                 tie: Tie::Nearest,
                 nearby_factor: 1.5,
                 turn: 0.0,
-                turn_near: 0.0,
-                near_start: 1.5,
-                near_end: 4.5,
+                turn_lasting: 0.0,
+                lasting_memory: 0.03,
                 softness: Softness::Hard,
                 infeasible: Infeasible::Relax,
                 slack_linear: 1e5,
@@ -85,10 +84,14 @@ impl Params {
         let mut params = Self::paper();
         params.mpc.reference = Reference::Straight;
         params.vodca.rows = RowChoice::Each;
-        params.vodca.turn = 0.35;
-        params.vodca.turn_near = 0.35;
+        params.vodca.turn = 0.24;
+        params.vodca.turn_lasting = 0.48;
+        params.vodca.lasting_memory = 0.02;
         params.vodca.softness = Softness::Soft;
-        params.aim.angle = 0.35;
+        params.vodca.slack_linear = 1e3;
+        params.mpc.input_weight = 5.0;
+        params.aim = Aim { angle: 0.19, memory: 0.3, fade_start: 1.5, fade_end: 6.0 };
+        params.horizon.jitter = 2;
         params.give_way.radius = 1.5;
         params.cell.enabled = true;
         params
