@@ -9,9 +9,10 @@ use tests::{Robots, Run};
 
 /// The trajectory of the team in this process.
 fn in_process(scenario: &str, horizon: &str, profile: Profile, ticks: u64) -> String {
-    let (scenario, params) = shared::scenario::set_up(Some(scenario), None, profile, &[]).unwrap();
-    let spec = horizon.parse().unwrap();
-    let source = HorizonSource::new(&spec, scenario.robots.len(), 7, params.horizon.jitter).unwrap();
+    let (scenario, params) = shared::scenario::set_up(Some(scenario), None, profile, &[]).expect("a valid scenario");
+    let spec = horizon.parse().expect("a valid source");
+    let source = HorizonSource::new(&spec, scenario.robots.len(), 7, params.horizon.jitter);
+    let source = source.expect("horizons for all");
     let mut team = Team::new(&scenario, &params, 7);
     let (mut text, mut positions) = (format!("{HEADER}\n"), Vec::new());
     for tick in 0..ticks {
