@@ -62,7 +62,9 @@ impl OrcaController {
         let way = self.layout.set_points[self.robot] - position;
         let speed = (way.norm() / model.sample_time).min(model.max_speed);
         let straight = if way.norm() < 1e-9 { Input::zeros() } else { way.normalize() * speed };
-        turned(straight, -self.params.orca.aim) + in_disc(self.params.orca.push, self.seed, Use::Push, self.robot, tick)
+        // A constant turn circles the set-point at the end: a full tick's way is lost there.
+        let aim = self.params.orca.aim * (way.norm() / self.params.orca.fade).min(1.0);
+        turned(straight, -aim) + in_disc(self.params.orca.push, self.seed, Use::Push, self.robot, tick)
     }
 
     /// Half planes of obstacles first: they stay hard when the robots' planes cannot all be met.

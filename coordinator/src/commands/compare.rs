@@ -72,13 +72,14 @@ pub fn run(args: Args) -> Ending {
     progress.finish();
     let comparison = Comparison::new(&plan, &jobs, &runs);
     let table = by_family(&comparison);
+    // Whatever becomes of the terminal, the results are kept.
+    folder.write("runs.csv", by_run(&plan, &jobs, &runs).csv().as_bytes()).map_err(Failure::broken)?;
+    folder.write("table.md", table.markdown().as_bytes()).map_err(Failure::broken)?;
+    write_summary(&folder, &comparison).map_err(Failure::broken)?;
     print!("{}", table.aligned());
     for line in verdicts(&plan, &jobs, &runs) {
         println!("{line}");
     }
-    folder.write("runs.csv", by_run(&plan, &jobs, &runs).csv().as_bytes()).map_err(Failure::broken)?;
-    folder.write("table.md", table.markdown().as_bytes()).map_err(Failure::broken)?;
-    write_summary(&folder, &comparison).map_err(Failure::broken)?;
     println!("{} runs, each a line of {}", runs.len(), folder.file("runs.csv").display());
     Ok(Outcome::Done)
 }
@@ -101,7 +102,7 @@ fn verdicts(plan: &Plan, jobs: &[Job], runs: &[Run]) -> Vec<String> {
         let below = all.iter().filter(|(_, run)| run.summary.pairs_below_min_separation > 0).count();
         let late: Vec<&Job> =
             all.iter().filter(|(_, run)| run.summary.completion_time.is_none()).map(|(job, _)| *job).collect();
-        let name = |job: &&Job| format!("{} ({}, seed {})", job.scenario.name, job.horizon, job.scenario.seed);
+        let name = |job: &&Job| format!("{} (horizon {}, seed {})", job.scenario.name, job.horizon, job.scenario.seed);
         let named: Vec<String> = late.iter().take(NAMED).map(name).collect();
         let more = if late.len() > NAMED { format!(" and {} more", late.len() - NAMED) } else { String::new() };
         let which = if late.is_empty() { String::new() } else { format!("; not arrived: {}{more}", named.join(", ")) };

@@ -54,7 +54,7 @@ pub struct Job {
     pub entry: usize,
     /// The scenario with its starts moved and its seed set.
     pub scenario: Scenario,
-    /// Where the horizons come from, for tables.
+    /// Where the horizons come from, for tables; `-` where there are none.
     pub horizon: String,
     pub(super) params: Params,
     pub(super) source: HorizonSource,
@@ -82,7 +82,11 @@ impl Plan {
                                 scenario: scenario.name.clone(),
                                 source,
                             })?;
-                        let (params, horizon) = (params.clone(), horizon.to_string());
+                        let horizon = match params.controller.kind {
+                            ControllerKind::Vodca => horizon.to_string(),
+                            ControllerKind::Orca => "-".into(),
+                        };
+                        let params = params.clone();
                         jobs.push(Job { contender: index, entry, scenario, horizon, params, source });
                     }
                 }
