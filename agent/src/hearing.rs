@@ -70,13 +70,18 @@ impl Hearing {
 
 /// The position that `robot` measures at `tick`, m: `position` plus a draw from a disc of radius `noise`.
 pub fn measured(position: Position, noise: f64, seed: u64, robot: usize, tick: u64) -> Position {
-    if noise == 0.0 {
-        return position;
+    position + in_disc(noise, seed, Use::Noise, robot, tick)
+}
+
+/// A draw from a disc of radius `radius` around the origin; nothing is drawn where it is 0.
+pub(crate) fn in_disc(radius: f64, seed: u64, purpose: Use, robot: usize, tick: u64) -> Position {
+    if radius == 0.0 {
+        return Position::zeros();
     }
-    let mut generator = random::stream(seed, Use::Noise, robot as u64, tick);
-    let radius = noise * random::unit(&mut generator).sqrt();
+    let mut generator = random::stream(seed, purpose, robot as u64, tick);
+    let length = radius * random::unit(&mut generator).sqrt();
     let (sin, cos) = (std::f64::consts::TAU * random::unit(&mut generator)).sin_cos();
-    position + Position::new(cos, sin) * radius
+    Position::new(cos, sin) * length
 }
 
 #[cfg(test)]

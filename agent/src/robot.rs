@@ -23,12 +23,12 @@ pub struct Robot {
 }
 
 impl Robot {
-    /// Robot number `robot` at its start. `seed` feeds the measuring noise.
+    /// Robot number `robot` at its start. `seed` feeds what is random: measuring noise, ORCA's push.
     pub fn new(robot: usize, scenario: &Scenario, params: &Params, seed: u64) -> Self {
         let layout = Layout::of(scenario, params.model.min_separation);
         let controller: Box<dyn Controller> = match params.controller.kind {
             ControllerKind::Vodca => Box::new(VodcaController::new(robot, params, &layout)),
-            ControllerKind::Orca => Box::new(OrcaController::new(robot, params, &layout)),
+            ControllerKind::Orca => Box::new(OrcaController::new(robot, params, &layout, seed)),
         };
         Self {
             robot,

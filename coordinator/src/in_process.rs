@@ -2,10 +2,12 @@
 
 use agent::team::Team;
 use shared::horizon::Horizon;
-use shared::metrics::RunMetrics;
+use shared::horizon_source::HorizonSource;
+use shared::metrics::{RunMetrics, RunSummary};
 use shared::params::Params;
 use shared::scenario::Scenario;
 use shared::step::Step;
+use std::convert::Infallible;
 
 /// Runs the team until everybody has arrived or `scenario.max_ticks` have passed, but for one tick at
 /// least, as a team of processes does; `horizon(robot, tick)` is N_i^k after any jitter. `on_tick` sees
@@ -27,4 +29,22 @@ pub fn run_team<E>(
         }
     }
     Ok(metrics)
+}
+
+/// [`run_team`] with the horizons of `source`, to its end; `on_tick` sees the steps of every tick.
+pub fn run_whole(
+    scenario: &Scenario,
+    params: &Params,
+    source: &HorizonSource,
+    mut on_tick: impl FnMut(&[Step]),
+) -> RunSummary {
+    let horizon = |robot, tick| source.horizon(robot, tick);
+    let outcome = run_team(scenario, params, horizon, |_, steps| {
+        on_tick(steps);
+        Ok::<(), Infallible>(())
+    });
+    match outcome {
+        Ok(metrics) => metrics.finish(),
+        Err(never) => match never {},
+    }
 }

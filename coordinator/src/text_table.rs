@@ -50,6 +50,13 @@ impl TextTable {
         self.all_rows().map(|row| row.iter().map(quoted).collect::<Vec<_>>().join(",") + "\n").collect()
     }
 
+    /// As a table of Markdown.
+    pub fn markdown(&self) -> String {
+        let line = |row: &[String]| format!("| {} |\n", row.join(" | ").replace('\n', " "));
+        let rule = format!("|{}\n", "---|".repeat(self.header.len()));
+        line(&self.header) + &rule + &self.rows.iter().map(|row| line(row)).collect::<String>()
+    }
+
     fn all_rows(&self) -> impl Iterator<Item = &Vec<String>> {
         std::iter::once(&self.header).chain(&self.rows)
     }
@@ -69,6 +76,13 @@ mod tests {
     #[test]
     fn words_stand_left_and_numbers_right() {
         assert_eq!(sample().aligned(), "horizon       path  ok\nfixed:9,40     8.5  yes\nfixed:5     112.25  no\n");
+    }
+
+    #[test]
+    fn markdown_has_a_rule_below_the_header() {
+        let expected =
+            "| horizon | path | ok |\n|---|---|---|\n| fixed:9,40 | 8.5 | yes |\n| fixed:5 | 112.25 | no |\n";
+        assert_eq!(sample().markdown(), expected);
     }
 
     #[test]

@@ -24,6 +24,10 @@ pub enum Use {
     Policy = 7,
     /// Random QPs for tests and benchmarks.
     Problem = 8,
+    /// Pushes that break the symmetry of a baseline.
+    Push = 9,
+    /// Resamples of a bootstrap.
+    Resample = 10,
 }
 
 /// The generator of one `(seed, use, a, b)` coordinate, positioned at its first draw.

@@ -5,16 +5,19 @@
 
 use super::half_planes::{HalfPlane, cross, nearest_velocity};
 use crate::controller::{Controller, Decision, View};
+use crate::hearing::in_disc;
 use crate::layout::Layout;
 use crate::vodca::rows::turned;
 use shared::params::Params;
 use shared::prediction::Prediction;
+use shared::random::Use;
 use shared::step::{Level, Status};
 use shared::{Input, Position};
 
 /// One robot driven by ORCA.
 pub struct OrcaController {
     robot: usize,
+    seed: u64,
     params: Params,
     layout: Layout,
     velocity: Input,
@@ -37,11 +40,12 @@ struct Disc {
 }
 
 impl OrcaController {
-    /// The controller of `robot`; everything a tick needs is allocated here.
-    pub fn new(robot: usize, params: &Params, layout: &Layout) -> Self {
+    /// The controller of `robot`; everything a tick needs is allocated here. `seed` feeds `orca.push`.
+    pub fn new(robot: usize, params: &Params, layout: &Layout, seed: u64) -> Self {
         let discs = layout.set_points.len() + layout.obstacles.len();
         Self {
             robot,
+            seed,
             params: params.clone(),
             layout: layout.clone(),
             velocity: Input::zeros(),
@@ -51,12 +55,16 @@ impl OrcaController {
         }
     }
 
-    /// Straight to the set-point, turned right by `orca.aim`, no faster than arrives within the tick.
-    fn preferred_velocity(&self, position: Position) -> Input {
+    /// Straight to the set-point, turned right by `orca.aim`, no faster than arrives within the tick, and
+    /// pushed by a draw of `orca.push`: exact symmetry would hold robots in front of each other for ever.
+    fn preferred_velocity(&self, position: Position, tick: u64) -> Input {
         let model = &self.params.model;
         let way = self.layout.set_points[self.robot] - position;
         let speed = (way.norm() / model.sample_time).min(model.max_speed);
-        if way.norm() < 1e-9 { Input::zeros() } else { turned(way.normalize() * speed, -self.params.orca.aim) }
+        let straight = if way.norm() < 1e-9 { Input::zeros() } else { way.normalize() * speed };
+        // A constant turn circles the set-point at the end: a full tick's way is lost there.
+        let aim = self.params.orca.aim * (way.norm() / self.params.orca.fade).min(1.0);
+        turned(straight, -aim) + in_disc(self.params.orca.push, self.seed, Use::Push, self.robot, tick)
     }
 
     /// Half planes of obstacles first: they stay hard when the robots' planes cannot all be met.
@@ -131,7 +139,7 @@ fn half_plane(disc: &Disc, velocity: Input, time_horizon: f64, sample_time: f64)
 impl Controller for OrcaController {
     fn tick(&mut self, view: &View<'_>) -> Decision {
         let fixed = self.look_around(view);
-        let wanted = self.preferred_velocity(view.position);
+        let wanted = self.preferred_velocity(view.position, view.tick);
         let model = &self.params.model;
         let input = nearest_velocity(&self.planes, fixed, model.max_speed, wanted, &mut self.scratch);
         self.velocity = input;

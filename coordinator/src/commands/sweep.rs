@@ -2,7 +2,7 @@
 
 use super::range::Numbers;
 use crate::exit::{Ending, Failure, Outcome};
-use crate::in_process::run_team;
+use crate::in_process::run_whole;
 use crate::progress::Progress;
 use crate::record::folder::new_file;
 use crate::text_table::TextTable;
@@ -11,7 +11,6 @@ use shared::horizon_source::{HorizonSource, HorizonSourceError, HorizonSpec};
 use shared::metrics::RunSummary;
 use shared::params::{Params, Profile};
 use shared::scenario::{Scenario, set_up};
-use std::convert::Infallible;
 use std::path::PathBuf;
 use std::str::FromStr;
 
@@ -81,7 +80,8 @@ pub fn run(args: Args) -> Ending {
     let (scenario, params) = set_up(Some(&args.scenario), None, args.profile, &args.set).map_err(Failure::usage)?;
     let jobs = jobs(&args, &scenario, &params).map_err(Failure::usage)?;
     let progress = Progress::of_work(jobs.len());
-    let results = parallel::map(&jobs, |job| run_one(job, &params), || progress.advance());
+    let results =
+        parallel::map(&jobs, |job| run_whole(&job.scenario, &params, &job.source, |_| {}), || progress.advance());
     progress.finish();
 
     let mut table = TextTable::new(&[
@@ -119,15 +119,6 @@ fn jobs(args: &Args, scenario: &Scenario, params: &Params) -> Result<Vec<Job>, H
         }
     }
     Ok(jobs)
-}
-
-fn run_one(job: &Job, params: &Params) -> RunSummary {
-    let outcome =
-        run_team(&job.scenario, params, |robot, tick| job.source.horizon(robot, tick), |_, _| Ok::<(), Infallible>(()));
-    match outcome {
-        Ok(metrics) => metrics.finish(),
-        Err(never) => match never {},
-    }
 }
 
 fn row(job: &Job, run: &RunSummary) -> [String; 10] {

@@ -61,7 +61,15 @@ impl RunFolder {
     pub fn create(out: Option<&Path>, scenario: &str, robots: usize) -> Result<Self, RecordError> {
         match out {
             Some(path) => Self::at(path),
-            None => Self::fresh(Path::new("runs"), &format!("{}-{}-{robots}", utc_now(), plain(scenario))),
+            None => Self::named(None, &format!("{}-{robots}", plain(scenario))),
+        }
+    }
+
+    /// Makes `out`, or `runs/<UTC time>-<name>` below the current folder.
+    pub fn named(out: Option<&Path>, name: &str) -> Result<Self, RecordError> {
+        match out {
+            Some(path) => Self::at(path),
+            None => Self::fresh(Path::new("runs"), &format!("{}-{}", utc_now(), plain(name))),
         }
     }
 

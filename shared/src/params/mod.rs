@@ -74,6 +74,10 @@ pub struct Orca {
     pub max_neighbours: usize,
     /// Angle to the right of the set-point at which a robot aims, rad (ORCA-RH: 0.35).
     pub aim: f64,
+    /// Nearer to the set-point than this the aim fades linearly to none, m.
+    pub fade: f64,
+    /// Largest random push of the wanted velocity per tick, m/s; breaks exact symmetry, 0 is off.
+    pub push: f64,
 }
 
 /// What disturbs measuring and the exchange, on purpose (safe.md, section 3). All draws are seeded.

@@ -74,7 +74,14 @@ impl Params {
             horizon: HorizonParams { jitter: 0 },
             episode: Episode { arrival_tolerance: 0.1, collision_factor: 0.5 },
             controller: Controller { kind: ControllerKind::Vodca },
-            orca: Orca { time_horizon: 2.0, neighbour_distance: 15.0, max_neighbours: 20, aim: 0.0 },
+            orca: Orca {
+                time_horizon: 2.0,
+                neighbour_distance: 15.0,
+                max_neighbours: 20,
+                aim: 0.0,
+                fade: 3.0,
+                push: 0.0,
+            },
             disturbance: Disturbance { noise: 0.0, plan_delay: 0, plan_loss: 0.0, position_loss: 0.0 },
         }
     }

@@ -145,6 +145,8 @@ pub const ENTRIES: &[Entry] = &[
     entry("orca.neighbour_distance", "m", Above(0.0, 1000.0), "RVO2: neighborDist", "robots farther away are not seen"),
     entry("orca.max_neighbours", "robot", Whole(0, 200), "RVO2: maxNeighbors", "at most so many robots are seen, the nearest first"),
     entry("orca.aim", "rad", Between(0.0, 1.5), "ours: ORCA-RH 0.35", "every robot aims this far to the right of its set-point"),
+    entry("orca.fade", "m", Above(0.0, 1000.0), "ours", "nearer to the set-point than this the aim fades linearly to none; longer: shorter paths"),
+    entry("orca.push", "m/s", Between(0.0, 10.0), "ours", "seeded push of the wanted velocity, uniform over a disc, every tick; 0.3 breaks the deadlock of exact rings"),
     entry("disturbance.noise", "m", Between(0.0, 10.0), "safe section 3", "largest error of a measured position, uniform over a disc"),
     entry("disturbance.plan_delay", "tick", Whole(0, 100), "safe section 3", "plans arrive late; positions do not"),
     entry("disturbance.plan_loss", "-", Between(0.0, 1.0), "safe section 3", "share of plans that get lost; positions do not"),
