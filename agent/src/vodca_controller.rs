@@ -203,8 +203,9 @@ impl Controller for VodcaController {
     }
 }
 
-/// Every neighbour that was heard of, then every obstacle.
-fn hazards<'a>(
+/// What `robot` must keep away from in the tick of `view`: every neighbour that was heard of, then every
+/// obstacle. Asks for a tick after the first one.
+pub fn hazards<'a>(
     params: &'a Params,
     layout: &'a Layout,
     robot: usize,

@@ -1,6 +1,6 @@
 //! The command line: one subcommand per file of `commands/`.
 
-use crate::commands::{compare, golden, params, replay, run, scenario, sweep, verify};
+use crate::commands::{compare, golden, params, replay, report, run, scenario, sweep, verify};
 use crate::exit::Ending;
 use clap::{Parser, Subcommand};
 
@@ -37,6 +37,8 @@ enum Command {
     Replay(replay::Args),
     /// Check a recorded run from its CSV alone: separation, arrival, input bounds, model
     Verify(verify::Args),
+    /// Write recorded runs as one page for a browser: replay, charts, figures
+    Report(report::Args),
     /// List, check and generate scenarios
     Scenario(scenario::Args),
     /// List all parameters: value, unit, range, effect
@@ -53,6 +55,7 @@ impl Cli {
             Command::Golden(args) => golden::run(args),
             Command::Replay(args) => replay::run(args),
             Command::Verify(args) => verify::run(args),
+            Command::Report(args) => report::run(args),
             Command::Scenario(args) => scenario::run(args),
             Command::Params(args) => params::run(args),
         }

@@ -11,6 +11,7 @@ pub mod guarantee;
 pub mod in_process;
 pub mod latency;
 pub mod launch;
+pub mod page;
 pub mod parallel;
 pub mod progress;
 pub mod record;

@@ -1,6 +1,7 @@
 //! Everything that watches a run: record, metrics, timings, progress. Whoever produces the ticks hands them in.
 
 use crate::progress::Progress;
+use crate::record::latency::{self, LatencyWriter};
 use crate::record::{About, RecordError, Recorder, RunFolder};
 use crate::summary::{End, Summary, Timings};
 use shared::metrics::RunMetrics;
@@ -16,6 +17,7 @@ pub struct Session {
     params: Params,
     about: About,
     recorder: Recorder,
+    latency: LatencyWriter,
     metrics: RunMetrics,
     timings: Timings,
     progress: Progress,
@@ -24,8 +26,10 @@ pub struct Session {
 impl Session {
     /// Writes what is known before the first tick into `folder` and shows the progress line.
     pub fn start(folder: RunFolder, scenario: &Scenario, params: &Params, about: About) -> Result<Self, RecordError> {
+        let latency = folder.file(latency::FILE);
         Ok(Self {
             recorder: Recorder::start(folder, scenario, params, &about)?,
+            latency: LatencyWriter::create(latency, scenario.robots.len())?,
             metrics: RunMetrics::new(scenario, params),
             timings: Timings::new(scenario.robots.len()),
             progress: Progress::of_run(scenario.max_ticks),
@@ -39,6 +43,7 @@ impl Session {
     /// arrived, the run is over.
     pub fn tick(&mut self, tick: u64, steps: &[Step], duration: Duration) -> Result<bool, RecordError> {
         self.recorder.tick(tick, steps)?;
+        self.latency.tick(tick, duration, steps)?;
         self.metrics.observe(tick, steps);
         self.timings.observe(duration, steps);
         let metrics = &self.metrics;

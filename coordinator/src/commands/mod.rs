@@ -5,6 +5,7 @@ pub mod golden;
 pub mod params;
 pub mod range;
 pub mod replay;
+pub mod report;
 pub mod run;
 pub mod scenario;
 pub mod sweep;

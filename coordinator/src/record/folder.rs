@@ -140,6 +140,11 @@ pub fn new_file(out: Option<&Path>, name: &str, ending: &str) -> Result<PathBuf,
     Ok((1..1000).map(numbered).find(|path| !path.exists()).unwrap_or_else(|| numbered(1000)))
 }
 
+/// Writes a file that can be made again at any time, in place of an older one.
+pub fn replace(path: &Path, content: &[u8]) -> Result<(), RecordError> {
+    fs::write(path, content).map_err(|source| RecordError::Write { path: path.to_owned(), source })
+}
+
 /// Writes a file that must not exist yet.
 pub fn write_new(path: &Path, content: &[u8]) -> Result<(), RecordError> {
     let written = File::create_new(path).and_then(|mut file| file.write_all(content));

@@ -22,6 +22,7 @@ use super::trajectory::{level_word, status_word};
 use mcap::records::MessageHeader;
 use mcap::{Compression, McapError, WriteOptions, Writer};
 use serde_json::json;
+use shared::Position;
 use shared::params::Params;
 use shared::scenario::Scenario;
 use shared::step::Step;
@@ -111,6 +112,17 @@ impl LogWriter {
     }
 }
 
+/// Reads the plans out of the log's `/scene`: `each(plans)` is called once per tick, in order, with every
+/// robot's x^[0..=N|k], m. A log that was cut gives the ticks up to its last whole chunk; one that is no
+/// log at all gives none.
+pub fn read_plans(log: &[u8], mut each: impl FnMut(Vec<Vec<Position>>)) {
+    let options = mcap::read::Options::IgnoreEndMagic.into();
+    let Ok(stream) = mcap::read::MessageStream::new_with_options(log, options) else { return };
+    for message in stream.map_while(Result::ok).filter(|message| message.channel.topic == "/scene") {
+        each(scene::plans(&message.data));
+    }
+}
+
 fn record_error(path: PathBuf, error: McapError) -> RecordError {
     match error {
         McapError::Io(source) => RecordError::Write { path, source },
@@ -189,6 +201,20 @@ mod tests {
         assert_eq!((last.channel.topic.as_str(), last.log_time), ("/team", 59 * 200_000_000));
         let values: serde_json::Value = serde_json::from_slice(&last.data).unwrap();
         assert_eq!((&values["tick"], &values["robots"][2]["horizon"]), (&json!(59), &json!(3)));
+    }
+
+    #[test]
+    fn plans_read_back_to_the_same_numbers() {
+        let place = tempfile::tempdir().unwrap();
+        let bytes = record(place.path().join(FILE), 30);
+        let mut ticks = Vec::new();
+        read_plans(&bytes, |plans| ticks.push(plans));
+        assert_eq!(ticks.len(), 30);
+        for (tick, plans) in ticks.iter().enumerate() {
+            let steps = samples::steps(3, tick as u64);
+            assert!(plans.iter().zip(&steps).all(|(plan, step)| plan == step.plan.states()) && plans.len() == 3);
+        }
+        read_plans(b"no log", |_| panic!("nothing to read"));
     }
 
     #[test]

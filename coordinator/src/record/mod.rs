@@ -6,6 +6,7 @@
 //! | `run.toml` | command line, horizon source, exchange, versions, machine | at the start |
 //! | `trajectory.csv`, `horizons.csv` | what every robot did, its horizons | tick by tick |
 //! | `run.mcap` | the same as a film, with predicted paths | tick by tick |
+//! | `latency.csv` | how long ticks and plans took | tick by tick |
 //! | `summary.json` | how it went | at the end |
 //!
 //! A run that is cut leaves everything up to its last tick and no `summary.json`.
@@ -13,6 +14,7 @@
 pub mod about;
 pub mod folder;
 pub mod horizons;
+pub mod latency;
 pub mod mcap;
 mod protobuf;
 #[cfg(test)]

@@ -69,6 +69,54 @@ impl Message {
     }
 }
 
+/// A field's value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Value<'a> {
+    /// An integer, enum or bool.
+    Integer(u64),
+    /// A double.
+    Double(f64),
+    /// A string or a nested message.
+    Bytes(&'a [u8]),
+}
+
+/// The fields of an encoded message with their numbers, in the order written; ends at the first that is
+/// cut or of another kind.
+pub(super) fn fields(mut rest: &[u8]) -> impl Iterator<Item = (u64, Value<'_>)> {
+    std::iter::from_fn(move || {
+        let key = take_varint(&mut rest)?;
+        let value = match key & 7 {
+            VARINT => Value::Integer(take_varint(&mut rest)?),
+            FIXED_64 => {
+                let (value, after) = rest.split_first_chunk()?;
+                rest = after;
+                Value::Double(f64::from_le_bytes(*value))
+            }
+            LENGTH_DELIMITED => {
+                let length = usize::try_from(take_varint(&mut rest)?).ok()?;
+                let (value, after) = rest.split_at_checked(length)?;
+                rest = after;
+                Value::Bytes(value)
+            }
+            _ => return None,
+        };
+        Some((key >> 3, value))
+    })
+}
+
+fn take_varint(rest: &mut &[u8]) -> Option<u64> {
+    let mut value = 0;
+    for shift in (0..64).step_by(7) {
+        let (byte, after) = rest.split_first()?;
+        *rest = after;
+        value |= u64::from(byte & 0x7f) << shift;
+        if byte & 0x80 == 0 {
+            return Some(value);
+        }
+    }
+    None
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

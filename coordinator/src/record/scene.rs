@@ -3,7 +3,7 @@
 //! Numbers in the calls are the field numbers of the published schemas (`schemas/*.bin`, which go into
 //! the log as well). Frame `world`, metres, z up; discs are 0.2 m high so that they can be seen from the side.
 
-use super::protobuf::Message;
+use super::protobuf::{Message, Value, fields};
 use shared::Position;
 use shared::params::Params;
 use shared::scenario::Scenario;
@@ -54,6 +54,26 @@ pub(super) fn poses(nanoseconds: u64, steps: &[Step]) -> Message {
         Message::default().message(1, &triple(step.position, 0.0)).message(2, &heading)
     });
     Message::default().message(1, &timestamp(nanoseconds)).text(2, FRAME).messages(3, poses)
+}
+
+/// The predicted paths in a `SceneUpdate` that [`team`] wrote, by robot.
+pub(super) fn plans(scene: &[u8]) -> Vec<Vec<Position>> {
+    let nested = |bytes, wanted| {
+        fields(bytes).filter_map(move |(number, value)| match value {
+            Value::Bytes(bytes) if number == wanted => Some(bytes),
+            _ => None,
+        })
+    };
+    let coordinate = |point, wanted| {
+        let found = fields(point).find_map(|(number, value)| match value {
+            Value::Double(value) if number == wanted => Some(value),
+            _ => None,
+        });
+        found.unwrap_or(0.0) // a default is left out
+    };
+    let point = |bytes| Position::new(coordinate(bytes, 1), coordinate(bytes, 2));
+    let plan = |entity| nested(entity, 11).flat_map(|line| nested(line, 5)).map(point).collect();
+    nested(scene, 2).map(plan).collect()
 }
 
 fn entity(id: &str, nanoseconds: u64) -> Message {

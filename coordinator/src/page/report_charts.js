@@ -1,0 +1,87 @@
+"use strict";
+// The charts of a run. Charts of the same kind share their scales, so that runs side by side compare.
+
+const LEVELS = ["closed form", "structured solver", "Clarabel", "fallback", "baseline (no MPC)"];
+const LEVEL_COLOURS = ["#56b4e9", "#0072b2", "#e69f00", "#d55e00", "#8c8c8c"];
+const stroke = robot => ({ stroke: colourOf(robot), "stroke-dasharray": dashOf(robot).join(" ") });
+const largest = values => values.reduce((a, b) => Math.max(a, b), 0);
+
+// [time, value] of one robot's column, as steps held over the tick.
+function held(run, valueAt) {
+  const points = [], h = run.layout.sampleTime;
+  for (let tick = 0; tick < run.ticks; tick++) points.push(tick * h, valueAt(tick), (tick + 1) * h, valueAt(tick));
+  return points;
+}
+
+// Scales that fit all runs.
+function scalesOf(runs) {
+  const all = run => run.nearestOverTime = Float32Array.from({ length: run.ticks }, (_, tick) => run.nearest(tick) ?? NaN);
+  const speeds = runs.map(run => run.layout.maxSpeed);
+  return {
+    time: [0, Math.max(...runs.map(run => run.ticks * run.layout.sampleTime), 1)],
+    speed: [-1.1 * Math.max(...speeds), 1.1 * Math.max(...speeds)],
+    horizon: [0, Math.max(10, ...runs.map(run => largest(run.horizons)))],
+    separation: [0, Math.max(...runs.map(run => Math.max(largest(all(run).filter(Number.isFinite)), 2 * run.layout.minSeparation)))],
+    tickMs: [0, 1.1 * Math.max(0.1, ...runs.map(run => largest(run.tickMs)))],
+    solveUs: [0, 1.1 * Math.max(10, ...runs.map(run => largest(run.solveUs)))],
+  };
+}
+
+function chartsOf(run, scales, bounds, place) {
+  const h = run.layout.sampleTime, charts = [];
+  const over = (title, yLabel, y, more) => {
+    const chart = new Chart(place, { title, xLabel: "time (s)", yLabel, x: scales.time, y, timeOf: tick => tick * h, ...more });
+    charts.push(chart);
+    return chart;
+  };
+  const perRobot = (chart, valueAt) => {
+    for (let i = 0; i < run.count; i++) chart.line(held(run, tick => valueAt(tick, i)), stroke(i), i);
+  };
+  charts.push(motion(run, bounds, place));
+  perRobot(over("Prediction horizon", "horizon N (ticks)", scales.horizon), (tick, i) => run.at(run.horizons, tick, i));
+  perRobot(over("Control input, x", "ux (m/s)", scales.speed), (tick, i) => run.inputs[2 * (tick * run.count + i)]);
+  perRobot(over("Control input, y", "uy (m/s)", scales.speed), (tick, i) => run.inputs[2 * (tick * run.count + i) + 1]);
+
+  const rowScale = { y: [-0.6, run.count - 0.4], height: Math.max(170, 60 + 9 * run.count),
+    yTicks: roundSteps(0, run.count - 1, Math.min(run.count, 10)).filter(Number.isInteger) };
+  const mostRows = Math.max(1, largest(run.rows));
+  const activations = over("Constraint activations", "robot", null, rowScale);
+  activations.raster(run.ticks, run.count, (tick, i) => run.at(run.rows, tick, i),
+    rows => rows ? { fill: "#d55e00", opacity: 0.3 + 0.7 * rows / mostRows } : null);
+  activations.legend([["#d55e00", `collision rows, the darker the more (most: ${largest(run.rows)})`]]);
+
+  const separation = over("Separation (least of the team, between samples too)", "separation (m)", scales.separation);
+  separation.line(held(run, tick => run.nearestOverTime[tick]), { stroke: "#0072b2" });
+  separation.limit(run.layout.minSeparation, "limit", `r_min ${run.layout.minSeparation} m`);
+  separation.limit(run.layout.collisionDistance, "collision", `collision ${run.layout.collisionDistance} m`);
+
+  const levels = over("Solver level", "robot", null, rowScale);
+  levels.raster(run.ticks, run.count, (tick, i) => run.at(run.levels, tick, i), level => ({ fill: LEVEL_COLOURS[level] }));
+  const used = LEVELS.map((name, level) => [LEVEL_COLOURS[level], name]).filter((_, level) => run.levels.includes(level));
+  levels.legend(used);
+
+  if (run.tickMs.length) {
+    over("Latency of a tick (all robots)", "tick (ms)", scales.tickMs).line(held(run, tick => run.tickMs[tick]), { stroke: "#009e73" });
+    const solve = over("Time from messages to plan", "planning (µs)", scales.solveUs);
+    perRobot(solve, (tick, i) => run.at(run.solveUs, tick, i));
+  }
+  return charts;
+}
+
+function motion(run, [x0, y0, x1, y1], place) {
+  const chart = new Chart(place, { title: "Motion", xLabel: "x (m)", yLabel: "y (m)", x: [x0, x1], y: [y0, y1], equal: true });
+  const radius = metres => Math.abs(chart.toX(metres) - chart.toX(0));
+  for (const { at: [x, y], radius: r } of run.layout.obstacles) {
+    shape(chart.svg, "circle", { cx: chart.toX(x), cy: chart.toY(y), r: radius(r), fill: "#8c8c8c", opacity: 0.6 });
+  }
+  run.layout.robots.forEach((robot, i) => {
+    const points = [];
+    for (let tick = 0; tick <= run.ticks; tick++) points.push(...run.position(tick, i));
+    chart.line(points, stroke(i), i);
+    const [sx, sy] = robot.start, [gx, gy] = robot.setPoint;
+    shape(chart.svg, "circle", { cx: chart.toX(sx), cy: chart.toY(sy), r: 3, fill: colourOf(i) });
+    shape(chart.svg, "circle", { cx: chart.toX(gx), cy: chart.toY(gy), r: Math.max(4, radius(robot.radius)), fill: "none", stroke: colourOf(i) });
+    shape(chart.svg, "text", { x: chart.toX(sx) + 5, y: chart.toY(sy) - 4 }, i);
+  });
+  return chart;
+}
