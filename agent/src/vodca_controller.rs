@@ -7,6 +7,7 @@ use crate::mpc::problem::{Plan, Problem, Row, SlackPrice, SolveError, Target};
 use crate::reference;
 use crate::safety::cell::{Cell, Present};
 use crate::safety::last_check::nearest_safe;
+use crate::vodca::memory::ConflictMemory;
 use crate::vodca::rows::collision_rows;
 use crate::vodca::{Course, Hazard};
 use shared::horizon::Horizon;
@@ -26,8 +27,7 @@ pub struct VodcaController {
     cell: Cell,
     plan: Plan,
     previous: Option<Previous>,
-    in_conflict: f64,
-    lasting_conflict: f64,
+    memory: ConflictMemory,
 }
 
 /// The robot's own plan of tick k - 1.
@@ -50,8 +50,7 @@ impl VodcaController {
             cell: Cell::with_capacity(hazards, params.model.sample_time * params.model.max_speed),
             plan: Plan::default(),
             previous: None,
-            in_conflict: 0.0,
-            lasting_conflict: 0.0,
+            memory: ConflictMemory::default(),
         }
     }
 
@@ -62,16 +61,8 @@ impl VodcaController {
         let hazards = hazards(&self.params, &self.layout, self.robot, view);
         let min_separation = self.params.model.min_separation;
         let vodca = &self.params.vodca;
-        // Small angles give short paths through dense traffic; what they leave stuck, large ones resolve.
-        let turn = vodca.turn + (vodca.turn_lasting - vodca.turn) * self.lasting_conflict;
+        let turn = self.memory.turn(vodca);
         collision_rows(vodca, min_separation, turn, &previous.prediction, view.horizon, hazards, &mut self.rows)
-    }
-
-    /// Rule 4: how much and how long the robot has been in conflict, two numbers in 0..=1.
-    fn remember(&mut self, rows: usize) {
-        let flag = if rows > 0 { 1.0 } else { 0.0 };
-        self.in_conflict += self.params.aim.memory * (flag - self.in_conflict);
-        self.lasting_conflict += self.params.vodca.lasting_memory * (flag - self.lasting_conflict);
     }
 
     /// Rule 1: the reference, aimed by rule 4.
@@ -80,7 +71,7 @@ impl VodcaController {
         match self.params.mpc.reference {
             Reference::SetPoint => reference::set_point(&mut self.target, set_point, view.horizon),
             Reference::Straight => {
-                let seen = reference::aim(&self.params.aim, self.in_conflict, view.position, set_point);
+                let seen = reference::aim(&self.params.aim, self.memory.recent, view.position, set_point);
                 let model = &self.params.model;
                 let (h, speed) = (model.sample_time, model.max_speed);
                 reference::straight(&mut self.target, view.position, seen, view.horizon, h, speed);
@@ -192,7 +183,7 @@ fn bounded(axis: f64, bound: f64) -> f64 {
 impl Controller for VodcaController {
     fn tick(&mut self, view: &View<'_>) -> Decision {
         let rows = self.detect(view);
-        self.remember(rows);
+        self.memory.remember(&self.params.aim, &self.params.vodca, rows);
         self.aim(view);
         self.bound_cell(view);
         let (level, status) = self.solve(view, rows);

@@ -2,6 +2,7 @@
 //! to collision rows of tick `k`. No IPC, no solver.
 
 pub mod conflict;
+pub mod memory;
 pub mod rows;
 
 pub use conflict::{Conflict, Course, Hazard};

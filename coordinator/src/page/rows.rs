@@ -9,11 +9,13 @@ use shared::params::{ControllerKind, Params};
 use shared::step::Step;
 
 /// The rows of robot `robot` in tick `tick`, from the plans of the tick before. Empty when they cannot be
-/// found again in the number that was recorded (another controller, disturbed exchange).
+/// found again in the number that was recorded (another controller, disturbed exchange). `turn` is the angle
+/// of the rows' normals at that tick, rad.
 pub(super) fn rows(
     params: &Params,
     layout: &Layout,
     robot: usize,
+    turn: f64,
     tick: u64,
     before: &[Step],
     now: &[Step],
@@ -31,7 +33,7 @@ pub(super) fn rows(
     let view = View { tick, horizon: now[robot].horizon, position: now[robot].position, neighbours: &neighbours };
     let hazards = hazards(params, layout, robot, &view);
     let min_separation = params.model.min_separation;
-    collision_rows(&params.vodca, min_separation, &before[robot].plan, view.horizon, hazards, &mut rows);
+    collision_rows(&params.vodca, min_separation, turn, &before[robot].plan, view.horizon, hazards, &mut rows);
     if rows.len() != now[robot].rows as usize {
         rows.clear();
     }

@@ -4,6 +4,7 @@ use super::base64::{encode, floats};
 use super::recorded::Recorded;
 use super::rows::rows;
 use agent::layout::Layout;
+use agent::vodca::memory::ConflictMemory;
 use serde_json::{Value, json};
 use shared::Position;
 use shared::metrics::Disc;
@@ -99,9 +100,12 @@ fn lines(scenario: &Scenario, params: &Params, ticks: &[Vec<Step>]) -> Value {
     let layout = Layout::of(scenario, params.model.min_separation);
     let mut found = Vec::new();
     let mut counts = vec![0; ticks.first().map_or(0, Vec::len)];
+    let mut memories = vec![ConflictMemory::default(); counts.len()];
     for (tick, pair) in ticks.windows(2).enumerate() {
         for robot in 0..pair[1].len() {
-            let rows = rows(params, &layout, robot, tick as u64 + 1, &pair[0], &pair[1]);
+            let turn = memories[robot].turn(&params.vodca);
+            memories[robot].remember(&params.aim, &params.vodca, pair[1][robot].rows as usize);
+            let rows = rows(params, &layout, robot, turn, tick as u64 + 1, &pair[0], &pair[1]);
             counts.push(rows.len());
             found.extend(rows);
         }
