@@ -6,7 +6,7 @@ use crate::mpc::ladder::Ladder;
 use crate::mpc::problem::{Plan, Problem, Row, SlackPrice, SolveError, Target};
 use crate::reference;
 use crate::safety::cell::{Cell, Present};
-use crate::safety::last_check::nearest_safe;
+use crate::safety::last_check::{TOLERANCE, is_safe, nearest_safe};
 use crate::vodca::memory::ConflictMemory;
 use crate::vodca::rows::collision_rows;
 use crate::vodca::{Course, Hazard};
@@ -169,6 +169,7 @@ impl VodcaController {
                 inputs[0] = (step / model.sample_time).map(|axis| bounded(axis, model.max_speed));
                 shielded = true;
             }
+            debug_assert!(is_safe(inputs[0] * model.sample_time, &self.cell, 2.0 * TOLERANCE));
         }
         let set_point = self.layout.set_points[self.robot];
         (Prediction::roll_out(view.position, set_point, model.sample_time, inputs), shielded)

@@ -4,7 +4,10 @@
 use agent::mpc::ladder::Ladder;
 use agent::mpc::problem::{Plan, SolveError};
 use agent::mpc::sample::{Family, Sample};
+use agent::team::Team;
 use shared::horizon::Horizon;
+use shared::params::Profile;
+use shared::scenario::set_up;
 use shared::step::Level;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -90,4 +93,25 @@ fn the_counter_counts() {
     let before = ALLOCATIONS.get();
     drop(std::hint::black_box(vec![0u8; 100]));
     assert!(ALLOCATIONS.get() > before);
+}
+
+#[test]
+fn a_steady_tick_of_all_robots_allocates_nothing() {
+    for (profile, scenario) in [(Profile::Safe, "ex14_d"), (Profile::Safe, "four_gate"), (Profile::Orca, "rand16o3_s0")]
+    {
+        let (scenario, params) = set_up(Some(scenario), None, profile, &[]).unwrap();
+        let mut team = Team::new(&scenario, &params, 0);
+        let mut solved = 0;
+        // Buffers reach their size in the first ticks.
+        (0..5).for_each(|_| {
+            team.step(|_| Horizon::MAX);
+        });
+        let before = ALLOCATIONS.get();
+        for tick in 5..80 {
+            let steps = team.step(|robot| Horizon::random(1, robot, tick));
+            solved += steps.iter().filter(|step| step.rows > 0).count();
+        }
+        assert_eq!(ALLOCATIONS.get() - before, 0, "{} {profile}", scenario.name);
+        assert!(solved > 20, "{} {profile}: {solved} steps had rows", scenario.name);
+    }
 }

@@ -2,6 +2,7 @@
 
 mod by_hand;
 mod crash;
+mod golden;
 mod hang;
 mod interrupt;
 mod leftovers;

@@ -2,6 +2,7 @@
 
 use agent::team::Team;
 use coordinator::record::trajectory::{HEADER, push_end, push_tick};
+use shared::horizon::Horizon;
 use shared::horizon_source::HorizonSource;
 use shared::params::Profile;
 use std::process::{Child, Command, Stdio};
@@ -13,10 +14,14 @@ fn in_process(scenario: &str, horizon: &str, profile: Profile, ticks: u64) -> St
     let spec = horizon.parse().expect("a valid source");
     let source = HorizonSource::new(&spec, scenario.robots.len(), 7, params.horizon.jitter);
     let source = source.expect("horizons for all");
-    let mut team = Team::new(&scenario, &params, 7);
+    trajectory(Team::new(&scenario, &params, 7), ticks, |robot, tick| source.horizon(robot, tick))
+}
+
+/// What `team` does in `ticks` ticks, as a recorded run says it.
+pub fn trajectory(mut team: Team, ticks: u64, horizon: impl Fn(usize, u64) -> Horizon) -> String {
     let (mut text, mut positions) = (format!("{HEADER}\n"), Vec::new());
     for tick in 0..ticks {
-        let steps = team.step(|robot| source.horizon(robot, tick));
+        let steps = team.step(|robot| horizon(robot, tick));
         push_tick(&mut text, tick, steps);
         positions = steps.iter().map(|step| step.next_position).collect();
     }
