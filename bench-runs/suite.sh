@@ -49,9 +49,9 @@ robustness() { # noise, late and lost plans, lost positions
 ablations() { # each rule of the safe profile left out or changed
     compare ablations suite:all --seeds 1 --controllers \
         safe:fixed:20 \
-        'safe[vodca.turn=0]:fixed:20' \
+        'safe[vodca.turn=0,vodca.turn_near=0]:fixed:20' \
         'safe[aim.angle=0]:fixed:20' \
-        'safe[vodca.turn=0,aim.angle=0]:fixed:20' \
+        'safe[vodca.turn=0,vodca.turn_near=0,aim.angle=0]:fixed:20' \
         'safe[give_way.radius=0]:fixed:20' \
         'safe[give_way.radius=0.5]:fixed:20' \
         'safe[give_way.radius=1000]:fixed:20' \
@@ -60,6 +60,7 @@ ablations() { # each rule of the safe profile left out or changed
         'safe[cell.separation=0.75]:fixed:20' \
         'safe[vodca.turn=0.15]:fixed:20' \
         'safe[vodca.turn=0.25]:fixed:20' \
+        'safe[vodca.turn=0.35,vodca.turn_near=0.35]:fixed:20' \
         'safe[vodca.slack_linear=1000]:fixed:20' \
         'safe[mpc.input_weight=1]:fixed:20' \
         'safe[mpc.reference=set_point]:fixed:20' \
