@@ -26,8 +26,9 @@ rand16o3_s0 rand16o3_s1 rand16o3_s2 rand16o3_s3 rand16o3_s4 rand16o3_s5 rand16o3
 rand32o0_s0 rand32o0_s1 rand32o0_s2 rand32o0_s3
 segregate3x4_s0 segregate3x4_s1 segregate3x4_s2 segregate4x4_s0 segregate4x4_s1 segregate4x4_s2"
 
+# The jitter of the safe profile makes its fixed horizons random too: 25 runs per layout.
 quality() { # every layout, fixed and random horizons, against the paper's controller and ORCA
-    compare quality suite:all --seeds 20 \
+    compare quality suite:all --seeds 5 \
         --controllers safe:each:10,20,30,49,random paper:fixed:20 orca 'orca[orca.push=0.3]' orca-rh
 }
 robustness() { # noise, late and lost plans, lost positions
@@ -49,22 +50,25 @@ robustness() { # noise, late and lost plans, lost positions
 ablations() { # each rule of the safe profile left out or changed
     compare ablations suite:all --seeds 1 --controllers \
         safe:fixed:20 \
-        'safe[vodca.turn=0]:fixed:20' \
+        'safe[vodca.turn=0,vodca.turn_lasting=0]:fixed:20' \
         'safe[aim.angle=0]:fixed:20' \
-        'safe[vodca.turn=0,aim.angle=0]:fixed:20' \
+        'safe[vodca.turn=0,vodca.turn_lasting=0,aim.angle=0]:fixed:20' \
+        'safe[vodca.turn_lasting=0.24]:fixed:20' \
+        'safe[vodca.turn=0.35,vodca.turn_lasting=0.35]:fixed:20' \
+        'safe[vodca.turn=0.15,vodca.turn_lasting=0.15]:fixed:20' \
         'safe[give_way.radius=0]:fixed:20' \
         'safe[give_way.radius=0.5]:fixed:20' \
         'safe[give_way.radius=1000]:fixed:20' \
         'safe[aim.memory=1]:fixed:20' \
+        'safe[aim.memory=0.1]:fixed:20' \
+        'safe[aim.angle=0.35]:fixed:20' \
         'safe[cell.enabled=false]:fixed:20' \
         'safe[cell.separation=0.75]:fixed:20' \
-        'safe[vodca.turn=0.15]:fixed:20' \
-        'safe[vodca.turn=0.25]:fixed:20' \
-        'safe[vodca.slack_linear=1000]:fixed:20' \
+        'safe[vodca.slack_linear=100000]:fixed:20' \
+        'safe[mpc.input_weight=10]:fixed:20' \
         'safe[mpc.input_weight=1]:fixed:20' \
         'safe[mpc.reference=set_point]:fixed:20' \
-        'safe[horizon.jitter=0]:fixed:20' \
-        'safe[horizon.jitter=2]:fixed:20'
+        'safe[horizon.jitter=0]:fixed:20'
 }
 random() { # ten thousand layouts nobody has looked at
     compare random random-boxes:10000 --controllers safe:random
