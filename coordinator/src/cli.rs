@@ -6,7 +6,7 @@ use clap::{Parser, Subcommand};
 
 /// A team of robots, one process each, that plans with variable horizons and on-demand collision avoidance.
 #[derive(Debug, Parser)]
-#[command(name = "vodca", version, arg_required_else_help = true, max_term_width = 100, after_help = EXAMPLES)]
+#[command(name = "vodca", bin_name = "./run.sh", version, arg_required_else_help = true, max_term_width = 100, after_help = EXAMPLES)]
 pub struct Cli {
     #[command(subcommand)]
     command: Command,

@@ -44,7 +44,7 @@ pub enum HorizonSourceError {
         robots: usize,
     },
     /// The script cannot be read.
-    #[error("--horizon script:{}: cannot read the file: {source}", .file.display())]
+    #[error("--horizon script:{}: cannot read the file: {source}; check the path", .file.display())]
     Unreadable {
         /// The file.
         file: PathBuf,

@@ -10,6 +10,7 @@ use crate::session::Session;
 use crate::summary::End;
 use shared::exchange::Kind;
 use shared::horizon_source::{HorizonSource, HorizonSpec};
+use shared::messages::MAX_ROBOTS;
 use shared::params::{Params, Profile};
 use shared::scenario::{Scenario, set_up};
 use shared::stop::StopFlag;
@@ -29,7 +30,7 @@ Without --scenario: 2 two_setpoint, 4 four_gate, 14 ex14_d, otherwise a ring.
 Exit codes: 0 arrived, or asked to stop; 1 not arrived or collided; 2 wrong usage; 3 a robot's process was lost.")]
 pub struct Args {
     /// Number of robots
-    #[arg(value_name = "N", required_unless_present = "scenario")]
+    #[arg(value_name = "N", required_unless_present = "scenario", value_parser = number_of_robots)]
     robots: Option<usize>,
     /// Scenario: file, built-in name (`scenario list`) or family (ring:16, box:16:3:7)
     #[arg(long, value_name = "FILE|NAME")]
@@ -61,6 +62,10 @@ pub struct Args {
     /// Print the robots' commands and wait for them to be started by hand
     #[arg(long)]
     by_hand: bool,
+}
+
+fn number_of_robots(text: &str) -> Result<usize, String> {
+    text.parse().map_err(|_| format!("`{text}` is not a number of robots; write a whole number in 1..={MAX_ROBOTS}"))
 }
 
 #[derive(Clone, Copy, Debug, clap::ValueEnum)]

@@ -21,6 +21,8 @@ const SEGREGATE: &str = "segregate:GROUPSxSIZE:SEED";
 const CENTRE: Position = Position::new(12.5, 12.5);
 /// Centre distance kept between starts, set-points and obstacles that are drawn, m.
 const SPACING: f64 = 2.0;
+/// Distance of obstacles, m: a disc of 1.5 m passes between them with room to spare.
+const PASSAGE: f64 = 3.6;
 /// Draws per point before a box counts as too full.
 const ATTEMPTS: usize = 10_000;
 
@@ -89,26 +91,31 @@ fn ring(robots: usize) -> Scenario {
 }
 
 /// Starts, set-points and obstacles uniform in a square of 22 m (larger beyond 48 discs, at the same
-/// density), at least 2 m apart where they could touch.
+/// density), at least 2 m apart where they could touch; obstacles leave room to pass between them.
 fn random_box(robots: usize, obstacles: usize, seed: u64) -> Result<Scenario, String> {
     let discs = robots + obstacles;
     let side = 22.0 * (discs as f64 / 48.0).sqrt().max(1.0);
     let mut generator = stream(seed, BOX, robots, obstacles);
-    let mut place = |count: usize, taken: &[Position]| -> Result<Vec<Position>, String> {
+    let mut place = |count: usize, apart: f64, taken: &[Position]| -> Result<Vec<Position>, String> {
         let mut placed = taken.to_vec();
         for _ in 0..count {
             let mut draw = || side * (random::unit(&mut generator) - 0.5);
             let point = (0..ATTEMPTS)
                 .map(|_| CENTRE + Position::new(draw(), draw()))
-                .find(|point| placed.iter().all(|other| (point - other).norm() >= SPACING))
+                .find(|point| {
+                    let far = |(index, other): (usize, &Position)| {
+                        (point - other).norm() >= if index < taken.len() { SPACING } else { apart }
+                    };
+                    placed.iter().enumerate().all(far)
+                })
                 .ok_or("the box is too full; use fewer robots or obstacles, or another seed")?;
             placed.push(point);
         }
         Ok(placed.split_off(taken.len()))
     };
-    let obstacle = place(obstacles, &[])?;
-    let start = place(robots, &obstacle)?;
-    let set_point = place(robots, &obstacle)?;
+    let obstacle = place(obstacles, PASSAGE, &[])?;
+    let start = place(robots, SPACING, &obstacle)?;
+    let set_point = place(robots, SPACING, &obstacle)?;
     let max_ticks = if discs <= 51 { DEFAULT_MAX_TICKS } else { 1000 };
     let name = format!("box:{robots}:{obstacles}:{seed}");
     Ok(scenario(name, seed, max_ticks, start.into_iter().zip(set_point), obstacle))
