@@ -22,3 +22,4 @@ pub mod session;
 pub mod summary;
 pub mod text_table;
 pub mod verify;
+pub mod view;

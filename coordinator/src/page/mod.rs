@@ -10,6 +10,8 @@ pub mod run_data;
 
 use recorded::Recorded;
 use serde_json::{Value, json};
+use shared::params::Params;
+use shared::scenario::Scenario;
 
 const STYLE: &str = include_str!("style.css");
 /// What report and live page share, in the order in which one needs the other.
@@ -22,6 +24,13 @@ pub fn report(runs: &[Recorded]) -> String {
     let own = [include_str!("chart.js"), include_str!("report_charts.js"), include_str!("report.js")];
     let scripts = [&SCENE_SCRIPTS[..], &own[..]].concat();
     fill(include_str!("report.html"), &title, &scripts, &data)
+}
+
+/// The page that shows a run while it goes on; frames come from `frames` beside it.
+pub fn live(scenario: &Scenario, params: &Params, horizons: &str) -> String {
+    let data = json!({ "layout": run_data::layout(scenario, params), "horizons": horizons });
+    let scripts = [&SCENE_SCRIPTS[..], &[include_str!("live.js")]].concat();
+    fill(include_str!("live.html"), &scenario.name, &scripts, &data)
 }
 
 /// Puts the parts into a frame. Data cannot end its element early: `<` is written as an escape.
