@@ -7,6 +7,7 @@ pub mod clock;
 pub mod commands;
 pub mod compare;
 pub mod exit;
+pub mod figures;
 pub mod guarantee;
 pub mod in_process;
 pub mod latency;
