@@ -147,7 +147,7 @@ pub fn live_frame(frame: &Frame, params: &Params, layout: &Layout) -> Value {
             let step = &frame.steps[robot];
             let rows = match frame.before.len() {
                 0 => Vec::new(),
-                _ => rows(params, layout, robot, frame.tick, &frame.before, &frame.steps),
+                _ => rows(params, layout, robot, frame.turns[robot], frame.tick, &frame.before, &frame.steps),
             };
             let lines: Vec<Value> = rows
                 .iter()

@@ -13,6 +13,8 @@ pub struct Frame {
     pub before: Vec<Step>,
     /// What every robot did in this tick.
     pub steps: Vec<Step>,
+    /// Angle of the normals of every robot's collision rows in this tick, rad.
+    pub turns: Vec<f64>,
     /// How long the tick took.
     pub duration: Duration,
     /// Robots that have arrived.
@@ -96,6 +98,7 @@ pub(super) mod tests {
             tick,
             before: Vec::new(),
             steps: samples::steps(2, tick),
+            turns: vec![0.0; 2],
             duration: Duration::from_micros(420),
             arrived: 1,
             min_separation: 1.75,

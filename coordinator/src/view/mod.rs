@@ -7,6 +7,7 @@ mod browser;
 mod frame;
 mod terminal;
 
+use agent::vodca::memory::ConflictMemory;
 use browser::BrowserView;
 pub use frame::Frame;
 use frame::Slot;
@@ -57,6 +58,8 @@ pub struct Views {
     slot: Arc<Slot>,
     terminal: Option<TerminalView>,
     browser: Option<BrowserView>,
+    params: Params,
+    memories: Vec<ConflictMemory>,
     before: Vec<Step>,
     fallbacks: u64,
     next: Instant,
@@ -79,7 +82,17 @@ impl Views {
             true => Some(TerminalView::open(slot.clone(), scenario, params, &wanted.horizons)?),
             false => None,
         };
-        Ok(Self { slot, terminal, browser, before: Vec::new(), fallbacks: 0, next: Instant::now(), last: None })
+        Ok(Self {
+            slot,
+            terminal,
+            browser,
+            params: params.clone(),
+            memories: vec![ConflictMemory::default(); scenario.robots.len()],
+            before: Vec::new(),
+            fallbacks: 0,
+            next: Instant::now(),
+            last: None,
+        })
     }
 
     /// Takes in a tick that took `duration`; `metrics` have seen it already.
@@ -95,12 +108,18 @@ impl Views {
                 tick,
                 before: self.before.clone(),
                 steps: steps.to_vec(),
+                turns: self.memories.iter().map(|memory| memory.turn(&self.params.vodca)).collect(),
                 duration,
                 arrived: metrics.arrived(),
                 min_separation: metrics.min_separation(),
                 fallbacks: self.fallbacks,
             };
             self.last = self.slot.offer(frame);
+        }
+        if tick > 0 {
+            for (memory, step) in self.memories.iter_mut().zip(steps) {
+                memory.remember(&self.params.aim, &self.params.vodca, step.rows as usize);
+            }
         }
         self.before.clear();
         self.before.extend_from_slice(steps);
