@@ -34,6 +34,10 @@ pub fn all(mut done: impl FnMut(&str)) -> Result<Vec<Figure>, Failed> {
     done("fourteen robots");
     let four = FOUR.best_random(SEEDS)?;
     figures.push(("four_motion.svg", motion(&FOUR, &four, "Four robots through a gate")));
+    let mut runs = fixed_runs(&FOUR)?;
+    runs.push(four);
+    let path = |film: &Film| film.summary.path_cost;
+    figures.push(("four_path.svg", bars(&FOUR, &runs, "Four robots through a gate: path cost", "path cost (m)", path)));
     figures.push(("safe_motion.svg", motion(&SAFE, &SAFE.run("fixed:20")?, "Fourteen robots, safe profile")));
     done("four robots, safe profile");
     Ok(figures)
@@ -181,11 +185,11 @@ mod tests {
 
     #[test]
     fn a_run_that_failed_is_drawn_in_red() {
-        let runs = [TWO.run("fixed:5").unwrap(), TWO.run("fixed:20").unwrap()];
+        let runs = [TWO.run("fixed:6").unwrap(), TWO.run("fixed:20").unwrap()];
         assert_eq!(runs.each_ref().map(|film| film.summary.success), [false, true]);
         let text = bars(&TWO, &runs, "rows", "rows", |film| film.summary.activations as f64);
         assert_eq!(text.matches(FAILED).count(), 2, "a bar and the legend: {text}");
-        assert!(text.contains(">FH5<") && text.contains(">FH20<"));
+        assert!(text.contains(">FH6<") && text.contains(">FH20<"));
     }
 
     #[test]
