@@ -1,6 +1,6 @@
 //! The command line: one subcommand per file of `commands/`.
 
-use crate::commands::{compare, golden, params, replay, report, run, scenario, sweep, verify};
+use crate::commands::{compare, figures, golden, params, replay, report, run, scenario, sweep, verify};
 use crate::exit::Ending;
 use clap::{Parser, Subcommand};
 
@@ -39,6 +39,8 @@ enum Command {
     Verify(verify::Args),
     /// Write recorded runs as one page for a browser: replay, charts, figures
     Report(report::Args),
+    /// Run the paper's tasks anew and draw its figures as SVG
+    Figures(figures::Args),
     /// List, check and generate scenarios
     Scenario(scenario::Args),
     /// List all parameters: value, unit, range, effect
@@ -56,6 +58,7 @@ impl Cli {
             Command::Replay(args) => replay::run(args),
             Command::Verify(args) => verify::run(args),
             Command::Report(args) => report::run(args),
+            Command::Figures(args) => figures::run(args),
             Command::Scenario(args) => scenario::run(args),
             Command::Params(args) => params::run(args),
         }

@@ -20,6 +20,11 @@ impl Progress {
         Self::new(max_ticks, TICKS)
     }
 
+    /// Shows nothing.
+    pub fn hidden() -> Self {
+        Self(ProgressBar::hidden())
+    }
+
     fn new(length: u64, template: &str) -> Self {
         // `stderr_with_hz` draws at most ten times a second.
         let visible = std::io::stderr().is_terminal();

@@ -51,6 +51,17 @@ impl Session {
         Ok(metrics.arrived_all())
     }
 
+    /// The figures so far.
+    pub fn metrics(&self) -> &RunMetrics {
+        &self.metrics
+    }
+
+    /// No progress line: something else uses the terminal.
+    pub fn hide_progress(&mut self) {
+        self.progress.finish();
+        self.progress = Progress::hidden();
+    }
+
     /// The run's folder.
     pub fn path(&self) -> &Path {
         self.recorder.path()

@@ -1,8 +1,10 @@
 //! `compare`: controllers over scenarios and seeds, in this process.
 
 use super::range::Numbers;
+use super::report::PAGE;
 use crate::compare::{Comparison, Contender, Job, Plan, Run, by_family, by_run, expand};
 use crate::exit::{Ending, Failure, Outcome};
+use crate::page;
 use crate::parallel;
 use crate::progress::Progress;
 use crate::record::folder::{RecordError, RunFolder};
@@ -22,7 +24,7 @@ random-boxes:COUNT (8 to 32 robots, each run with its own seed).
 Controllers: PROFILE[KEY=VALUE,...]:HORIZON; each:10,20,30,49,random is a run with each of them, all in one row; orca,
 orca:TAU, orca-rh. What has nothing random in it runs once, whatever --seeds says.
 Ratio, ticks and time are medians over the runs that succeeded (interval: seeded bootstrap); separations count every run.
-The folder holds runs.csv (a line per run), table.md and summary.json.")]
+The folder holds runs.csv (a line per run), table.md, summary.json and report.html (charts for a browser).")]
 pub struct Args {
     /// What to run: names, files, families, suites, random-boxes:COUNT
     #[arg(value_name = "SCENARIO|SUITE", default_value = "suite:quick")]
@@ -76,11 +78,18 @@ pub fn run(args: Args) -> Ending {
     folder.write("runs.csv", by_run(&plan, &jobs, &runs).csv().as_bytes()).map_err(Failure::broken)?;
     folder.write("table.md", table.markdown().as_bytes()).map_err(Failure::broken)?;
     write_summary(&folder, &comparison).map_err(Failure::broken)?;
+    let page = page::compare(&comparison, &plan, &jobs, &runs);
+    folder.write(PAGE, page.as_bytes()).map_err(Failure::broken)?;
     print!("{}", table.aligned());
     for line in verdicts(&plan, &jobs, &runs) {
         println!("{line}");
     }
-    println!("{} runs, each a line of {}", runs.len(), folder.file("runs.csv").display());
+    println!(
+        "{} runs, each a line of {}; charts: {}",
+        runs.len(),
+        folder.file("runs.csv").display(),
+        folder.file(PAGE).display()
+    );
     Ok(Outcome::Done)
 }
 

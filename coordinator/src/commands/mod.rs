@@ -1,6 +1,7 @@
 //! The subcommands: each file holds one command's arguments and its work.
 
 pub mod compare;
+pub mod figures;
 pub mod golden;
 pub mod params;
 pub mod range;

@@ -1,20 +1,23 @@
 //! `run`: a team with one process per robot.
 
+use crate::commands::report as page;
 use crate::exit::{self, Ending, Failure};
 use crate::launch::Agents;
+use crate::page::recorded::Recorded;
 use crate::record::about::{Machine, Versions};
 use crate::record::{About, RecordError, RunFolder};
 use crate::report::report;
 use crate::run::{Options, Outcome, Team, Tick, Verdict};
 use crate::session::Session;
 use crate::summary::End;
+use crate::view::{Views, Wanted};
 use shared::exchange::Kind;
 use shared::horizon_source::{HorizonSource, HorizonSpec};
 use shared::messages::MAX_ROBOTS;
 use shared::params::{Params, Profile};
 use shared::scenario::{Scenario, set_up};
 use shared::stop::StopFlag;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// Arguments of `run`.
@@ -59,6 +62,15 @@ pub struct Args {
     /// Change a parameter (repeatable), e.g. vodca.rows=each; `params` lists them
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
+    /// Write the run's page for a browser as soon as it has ended, as `report` does
+    #[arg(long)]
+    report: bool,
+    /// Show the team in this terminal while it drives
+    #[arg(long)]
+    tui: bool,
+    /// Serve the scene to a browser on this machine while the team drives, best with --real-time; 0: any free port
+    #[arg(long, value_name = "PORT", num_args = 0..=1, default_missing_value = "0")]
+    live: Option<u16>,
     /// Print the robots' commands and wait for them to be started by hand
     #[arg(long)]
     by_hand: bool,
@@ -90,9 +102,17 @@ pub fn run(args: Args) -> Ending {
     let folder =
         RunFolder::create(args.out.as_deref(), &scenario.name, scenario.robots.len()).map_err(Failure::usage)?;
     let options = options(&args, &scenario, &folder)?;
-    let session = Session::start(folder, &scenario, &params, about(&args, &scenario, options.exchange))
+    let wanted = Wanted { terminal: args.tui, browser: args.live, horizons: options.horizons.clone() };
+    let views = Views::open(wanted, &scenario, &params).map_err(Failure::usage)?;
+    let mut session = Session::start(folder, &scenario, &params, about(&args, &scenario, options.exchange))
         .map_err(Failure::broken)?;
-    play(session, &scenario, &params, options, &stop)
+    if args.tui {
+        session.hide_progress();
+    }
+    let folder = session.path().to_owned();
+    let ending = play(session, views, &scenario, &params, options, &stop);
+    point_to_page(&folder, args.report)?;
+    ending
 }
 
 fn options(args: &Args, scenario: &Scenario, folder: &RunFolder) -> Result<Options, Failure> {
@@ -132,12 +152,21 @@ fn about(args: &Args, scenario: &Scenario, exchange: Kind) -> About {
 }
 
 /// Starts the processes, hands their ticks to the session and says how it ended.
-fn play(mut session: Session, scenario: &Scenario, params: &Params, options: Options, stop: &StopFlag) -> Ending {
+fn play(
+    mut session: Session,
+    mut views: Views,
+    scenario: &Scenario,
+    params: &Params,
+    options: Options,
+    stop: &StopFlag,
+) -> Ending {
     let team = Team::launch(scenario, params, options, stop).map_err(Failure::broken)?;
     let mut unrecorded: Option<RecordError> = None;
     let mut observer = |tick: &Tick<'_>| {
         let duration = Duration::from_nanos(tick.collected.saturating_sub(tick.announced));
-        match session.tick(tick.tick, tick.steps, duration) {
+        let observed = session.tick(tick.tick, tick.steps, duration);
+        views.tick(tick.tick, tick.steps, duration, session.metrics());
+        match observed {
             Ok(false) => Verdict::Continue,
             Ok(true) => Verdict::Arrived,
             Err(error) => {
@@ -146,7 +175,9 @@ fn play(mut session: Session, scenario: &Scenario, params: &Params, options: Opt
             }
         }
     };
-    let ended = team.run(stop, &mut observer).map_err(Failure::broken)?;
+    let ended = team.run(stop, &mut observer);
+    views.close(); // the terminal first: what follows is to be read
+    let ended = ended.map_err(Failure::broken)?;
     if let Some(error) = unrecorded {
         return Err(Failure::broken(error));
     }
@@ -172,4 +203,17 @@ fn play(mut session: Session, scenario: &Scenario, params: &Params, options: Opt
         _ if summary.run.success => Ok(exit::Outcome::Done),
         _ => Ok(exit::Outcome::Failed),
     }
+}
+
+/// Says how to see the run in a browser, or has written its page already.
+fn point_to_page(folder: &Path, wanted: bool) -> Result<(), Failure> {
+    if !wanted {
+        println!("{:<16}./run.sh report {}", "to see it", folder.display());
+        return Ok(());
+    }
+    let path = folder.join(page::PAGE);
+    let recorded = Recorded::read(folder).map_err(Failure::broken)?;
+    page::write(&path, &[recorded]).map_err(Failure::broken)?;
+    println!("{:<16}{}", "page", path.display());
+    Ok(())
 }

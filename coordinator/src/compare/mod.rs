@@ -29,6 +29,11 @@ pub struct Run {
 }
 
 impl Job {
+    /// r_min of its parameters, m.
+    pub fn min_separation(&self) -> f64 {
+        self.params.model.min_separation
+    }
+
     /// Does the run.
     pub fn run(&self) -> Run {
         let mut nanoseconds: Vec<u64> = Vec::new();

@@ -29,15 +29,15 @@ function cardsOf(run) {
     ["collision rows", s.activations],
     ["fallbacks", s.statuses.shifted + s.statuses.stopped],
     ["tick p50 / p99", `${(s.tick_latency.p50_us / 1e3).toFixed(2)} / ${(s.tick_latency.p99_us / 1e3).toFixed(2)} ms`],
-    ["guarantee", s.guarantee],
+    ["guarantee", s.guarantee, "", "wide"],
   ];
 }
 
 for (const run of runs) {
   const place = make("div"), list = make("dl", "cards");
   place.append(make("h3", "", run.name()));
-  for (const [name, value, kind] of cardsOf(run)) {
-    const card = make("div", "card");
+  for (const [name, value, kind, wide] of cardsOf(run)) {
+    const card = make("div", wide ? "card wide" : "card");
     card.append(make("dt", "", name), make("dd", kind || "", value));
     list.append(card);
   }
@@ -61,12 +61,26 @@ const scenes = runs.map(run => {
 
 const scales = scalesOf(runs);
 find("charts").className = runs.length > 1 ? "columns" : "";
-const charts = runs.flatMap(run => {
-  const place = make("div", runs.length > 1 ? "stack" : "columns");
+const places = runs.map(() => {
+  const place = make("div", runs.length > 1 ? "stack" : "charts");
   find("charts").append(place);
-  if (runs.length > 1) place.append(make("h3", "", run.name()));
-  return chartsOf(run, scales, bounds, place);
+  return place;
 });
+let charts = [];
+
+// Charts are drawn for the width they have, so a new width draws them anew.
+function drawCharts() {
+  // Keeps the reader's place while the charts are away.
+  find("charts").style.minHeight = `${find("charts").offsetHeight}px`;
+  charts = runs.flatMap((run, n) => {
+    places[n].replaceChildren();
+    if (runs.length > 1) places[n].append(make("h3", "", run.name()));
+    return chartsOf(run, scales, bounds, places[n]);
+  });
+  find("charts").style.minHeight = "";
+  charts.forEach(chart => chart.follow(player.followed));
+  charts.forEach(chart => chart.mark(player.time * sampleTime));
+}
 
 const lastTick = Math.max(...runs.map(run => run.ticks));
 const sampleTime = runs[0].layout.sampleTime;
@@ -142,4 +156,10 @@ document.addEventListener("keydown", event => {
   key();
 });
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", show);
+let drawnFor = 0;
+new ResizeObserver(() => {
+  const width = find("charts").clientWidth;
+  if (width !== drawnFor) drawCharts();
+  drawnFor = width;
+}).observe(find("charts"));
 show();

@@ -38,12 +38,11 @@ function chartsOf(run, scales, bounds, place) {
     for (let i = 0; i < run.count; i++) chart.line(held(run, tick => valueAt(tick, i)), stroke(i), i);
   };
   charts.push(motion(run, bounds, place));
-  perRobot(over("Prediction horizon", "horizon N (ticks)", scales.horizon), (tick, i) => run.at(run.horizons, tick, i));
+  horizons(run, scales, over, perRobot);
   perRobot(over("Control input, x", "ux (m/s)", scales.speed), (tick, i) => run.inputs[2 * (tick * run.count + i)]);
   perRobot(over("Control input, y", "uy (m/s)", scales.speed), (tick, i) => run.inputs[2 * (tick * run.count + i) + 1]);
 
-  const rowScale = { y: [-0.6, run.count - 0.4], height: Math.max(170, 60 + 9 * run.count),
-    yTicks: roundSteps(0, run.count - 1, Math.min(run.count, 10)).filter(Number.isInteger) };
+  const rowScale = rowsOf(run);
   const mostRows = Math.max(1, largest(run.rows));
   const activations = over("Constraint activations", "robot", null, rowScale);
   activations.raster(run.ticks, run.count, (tick, i) => run.at(run.rows, tick, i),
@@ -66,6 +65,26 @@ function chartsOf(run, scales, bounds, place) {
     perRobot(solve, (tick, i) => run.at(run.solveUs, tick, i));
   }
   return charts;
+}
+
+// Axis with one row per robot.
+const rowsOf = run => ({ y: [-0.6, run.count - 0.4], height: Math.max(170, 60 + 9 * run.count),
+  yTicks: roundSteps(0, run.count - 1, Math.min(run.count, 10)).filter(Number.isInteger) });
+
+// Lines for few robots; more would hide each other: then a row per robot, light where the horizon is long.
+function horizons(run, scales, over, perRobot) {
+  const horizon = (tick, i) => run.at(run.horizons, tick, i);
+  if (run.count <= 4) return perRobot(over("Prediction horizon", "horizon N (ticks)", scales.horizon), horizon);
+  const chart = over("Prediction horizon", "robot", null, rowsOf(run));
+  chart.raster(run.ticks, run.count, horizon, value => ({ fill: cividis(value / 49) }));
+  chart.legend([1, 10, 20, 30, 40, 49].map(value => [cividis(value / 49), `N = ${value}`]));
+}
+
+// Nunez, Anderton and Renslow's scale from dark blue to yellow, even for the colour-blind; 0 <= part <= 1.
+const CIVIDIS = [[0, 32, 77], [49, 68, 107], [102, 105, 112], [149, 143, 120], [203, 186, 105], [255, 234, 70]];
+function cividis(part) {
+  const at = Math.min(part, 1) * (CIVIDIS.length - 1), low = Math.min(Math.floor(at), CIVIDIS.length - 2);
+  return `rgb(${CIVIDIS[low].map((from, n) => Math.round(from + (CIVIDIS[low + 1][n] - from) * (at - low)))})`;
 }
 
 function motion(run, [x0, y0, x1, y1], place) {

@@ -3,6 +3,7 @@
 use super::base64::{encode, floats};
 use super::recorded::Recorded;
 use super::rows::rows;
+use crate::view::Frame;
 use agent::layout::Layout;
 use agent::vodca::memory::ConflictMemory;
 use serde_json::{Value, json};
@@ -136,4 +137,33 @@ pub fn separations(scenario: &Scenario, params: &Params, ticks: &[Vec<Step>]) ->
         }
     }
     all
+}
+
+/// One moment of a running team as the live page reads it.
+pub fn live_frame(frame: &Frame, params: &Params, layout: &Layout) -> Value {
+    let cm = |metres: f64| (metres * 100.0).round() / 100.0;
+    let robots: Vec<Value> = (0..frame.steps.len())
+        .map(|robot| {
+            let step = &frame.steps[robot];
+            let rows = match frame.before.len() {
+                0 => Vec::new(),
+                _ => rows(params, layout, robot, frame.turns[robot], frame.tick, &frame.before, &frame.steps),
+            };
+            let lines: Vec<Value> = rows
+                .iter()
+                .map(|row| json!({ "step": row.step, "angle": row.normal.y.atan2(row.normal.x), "offset": row.offset }))
+                .collect();
+            let plan: Vec<f64> = step.plan.states().iter().flat_map(|at| [cm(at.x), cm(at.y)]).collect();
+            json!({
+                "x": step.position.x, "y": step.position.y, "horizon": step.horizon, "rows": step.rows,
+                "level": step.level, "status": step.status, "solveUs": step.solve_ns as f64 / 1e3,
+                "plan": plan, "lines": lines,
+            })
+        })
+        .collect();
+    let separation = Some(frame.min_separation).filter(|separation| separation.is_finite());
+    json!({
+        "tick": frame.tick, "tickMs": frame.duration.as_secs_f64() * 1e3, "arrived": frame.arrived,
+        "minSeparation": separation, "fallbacks": frame.fallbacks, "robots": robots,
+    })
 }

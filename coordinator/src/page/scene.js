@@ -149,7 +149,7 @@ class Scene {
     pen.strokeStyle = i === this.followed || robot.rows > 0 ? this.text : colourOf(i);
     pen.stroke();
     const label = robot.horizon ? `${i} [${robot.horizon}]` : `${i}`;
-    const size = Math.max(9, Math.min(15, radius * this.scale * 0.75));
+    const size = Math.max(9, Math.min(15, radius * this.scale * 0.6));
     const [x, y] = [this.toX(robot.x), this.toY(robot.y)];
     pen.font = `600 ${size}px system-ui, sans-serif`;
     pen.textAlign = "center";

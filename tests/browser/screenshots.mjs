@@ -1,4 +1,4 @@
-// Pictures of a page at the widths that are looked at: node shot.mjs PAGE FOLDER [TICK]
+// Pictures of a page at the widths that are looked at: node screenshots.mjs PAGE FOLDER [TICK]
 import { Browser } from "./cdp.mjs";
 import { pathToFileURL } from "node:url";
 import { join } from "node:path";

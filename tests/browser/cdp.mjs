@@ -60,12 +60,11 @@ export class Browser {
     return page;
   }
 
-  close() {
-    this.child.kill();
-    return new Promise(resolve => this.child.once("exit", () => {
-      rmSync(this.profile, { recursive: true, force: true, maxRetries: 5 });
-      resolve();
-    }));
+  async close() {
+    const ended = new Promise(resolve => this.child.once("exit", resolve));
+    await this.send("Browser.close");
+    await ended;
+    rmSync(this.profile, { recursive: true, force: true, maxRetries: 10, retryDelay: 200 });
   }
 }
 

@@ -1,0 +1,75 @@
+//! Runs whose every tick is kept, for figures.
+
+use crate::in_process::run_whole;
+use shared::horizon_source::HorizonSource;
+use shared::metrics::RunSummary;
+use shared::params::{Params, Profile};
+use shared::scenario::{Scenario, set_up};
+use shared::step::Step;
+use std::error::Error;
+
+/// What a figure runs.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Setting {
+    pub(super) scenario: &'static str,
+    pub(super) profile: Profile,
+    pub(super) set: Option<&'static str>,
+}
+
+/// A run, tick by tick.
+pub(super) struct Film {
+    pub(super) horizon: String,
+    pub(super) scenario: Scenario,
+    pub(super) params: Params,
+    pub(super) ticks: Vec<Vec<Step>>,
+    pub(super) summary: RunSummary,
+}
+
+impl Setting {
+    /// Runs it with `horizon`, a SPEC of `--horizon`.
+    pub(super) fn run(&self, horizon: &str) -> Result<Film, Box<dyn Error + Send + Sync>> {
+        let sets: Vec<String> = self.set.into_iter().map(String::from).collect();
+        let (scenario, params) = set_up(Some(self.scenario), None, self.profile, &sets)?;
+        let source =
+            HorizonSource::new(&horizon.parse()?, scenario.robots.len(), scenario.seed, params.horizon.jitter)?;
+        let mut ticks = Vec::new();
+        let summary = run_whole(&scenario, &params, &source, |steps| ticks.push(steps.to_vec()));
+        Ok(Film { horizon: horizon.into(), scenario, params, ticks, summary })
+    }
+
+    /// The shortest successful run of `seeds` with random horizons; the first one when none succeeds.
+    pub(super) fn best_random(&self, seeds: u64) -> Result<Film, Box<dyn Error + Send + Sync>> {
+        let mut best = self.run("random:0")?;
+        for seed in 1..seeds {
+            let next = self.run(&format!("random:{seed}"))?;
+            let shorter = next.summary.path_cost < best.summary.path_cost || !best.summary.success;
+            if next.summary.success && shorter {
+                best = next;
+            }
+        }
+        Ok(best)
+    }
+
+    /// The command that repeats a run with `horizon`.
+    pub(super) fn command(&self, horizon: &str) -> String {
+        let Self { scenario, profile, .. } = self;
+        let set = self.set.map_or(String::new(), |set| format!(" --set {set}"));
+        format!("./run.sh run --scenario {scenario} --profile {profile} --horizon {horizon}{set}")
+    }
+}
+
+impl Film {
+    /// Mean planning time of a robot in a tick, us.
+    pub(super) fn mean_solve_us(&self) -> f64 {
+        let count = self.ticks.iter().flatten().count().max(1);
+        self.ticks.iter().flatten().map(|step| step.solve_ns as f64).sum::<f64>() / count as f64 / 1e3
+    }
+
+    /// Name of its bar.
+    pub(super) fn name(&self) -> String {
+        match self.horizon.strip_prefix("fixed:") {
+            Some(steps) => format!("FH{steps}"),
+            None => "VH".into(),
+        }
+    }
+}

@@ -1,0 +1,136 @@
+//! Views of a run while it goes on: in the terminal and in a browser.
+//!
+//! *Invariant*: a view never holds the run up. The run leaves its newest frame in a slot, at most twenty
+//! times a second and only if no reader has the slot just then; views take frames out at their own pace.
+
+mod browser;
+mod frame;
+mod terminal;
+
+use agent::vodca::memory::ConflictMemory;
+use browser::BrowserView;
+pub use frame::Frame;
+use frame::Slot;
+use shared::metrics::RunMetrics;
+use shared::params::Params;
+use shared::scenario::Scenario;
+use shared::step::{Status, Step};
+use std::io::{self, IsTerminal};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+use terminal::TerminalView;
+
+/// Time between two frames: no eye sees more, and the run pays for none beyond.
+const FRAME_TIME: Duration = Duration::from_millis(50);
+
+/// Which views are wanted.
+#[derive(Clone, Debug)]
+pub struct Wanted {
+    /// In this terminal.
+    pub terminal: bool,
+    /// In a browser, from this port of the loopback interface; 0: any free one.
+    pub browser: Option<u16>,
+    /// Where the horizons come from, to be shown.
+    pub horizons: String,
+}
+
+/// Why a view cannot be shown.
+#[derive(Debug, thiserror::Error)]
+pub enum ViewError {
+    /// Nothing to draw on.
+    #[error("--tui needs a terminal and standard output is none; leave it out, or use --live and a browser")]
+    NoTerminal,
+    /// The terminal refused.
+    #[error("cannot draw in this terminal: {0}; leave --tui out, or use --live and a browser")]
+    Terminal(#[source] io::Error),
+    /// The port is taken or not ours.
+    #[error("cannot serve on 127.0.0.1:{port}: {reason}; give another port, or none for any free one")]
+    Port {
+        /// The port asked for.
+        port: u16,
+        /// What the system said.
+        reason: String,
+    },
+}
+
+/// The views of one run.
+pub struct Views {
+    slot: Arc<Slot>,
+    terminal: Option<TerminalView>,
+    browser: Option<BrowserView>,
+    params: Params,
+    memories: Vec<ConflictMemory>,
+    before: Vec<Step>,
+    fallbacks: u64,
+    next: Instant,
+    last: Option<Frame>,
+}
+
+impl Views {
+    /// Opens what is wanted and says where it can be seen.
+    pub fn open(wanted: Wanted, scenario: &Scenario, params: &Params) -> Result<Self, ViewError> {
+        let slot = Arc::new(Slot::default());
+        let browser = match wanted.browser {
+            Some(port) => Some(BrowserView::open(port, slot.clone(), scenario, params, &wanted.horizons)?),
+            None => None,
+        };
+        if let Some(view) = &browser {
+            println!("{:<16}{}", "live view", view.address());
+        }
+        let terminal = match wanted.terminal {
+            true if !io::stdout().is_terminal() => return Err(ViewError::NoTerminal),
+            true => Some(TerminalView::open(slot.clone(), scenario, params, &wanted.horizons)?),
+            false => None,
+        };
+        Ok(Self {
+            slot,
+            terminal,
+            browser,
+            params: params.clone(),
+            memories: vec![ConflictMemory::default(); scenario.robots.len()],
+            before: Vec::new(),
+            fallbacks: 0,
+            next: Instant::now(),
+            last: None,
+        })
+    }
+
+    /// Takes in a tick that took `duration`; `metrics` have seen it already.
+    pub fn tick(&mut self, tick: u64, steps: &[Step], duration: Duration, metrics: &RunMetrics) {
+        if self.terminal.is_none() && self.browser.is_none() {
+            return;
+        }
+        let fell_back = |step: &&Step| matches!(step.status, Status::Shifted | Status::Stopped);
+        self.fallbacks += steps.iter().filter(fell_back).count() as u64;
+        if Instant::now() >= self.next || metrics.arrived_all() {
+            self.next = Instant::now() + FRAME_TIME;
+            let frame = Frame {
+                tick,
+                before: self.before.clone(),
+                steps: steps.to_vec(),
+                turns: self.memories.iter().map(|memory| memory.turn(&self.params.vodca)).collect(),
+                duration,
+                arrived: metrics.arrived(),
+                min_separation: metrics.min_separation(),
+                fallbacks: self.fallbacks,
+            };
+            self.last = self.slot.offer(frame);
+        }
+        if tick > 0 {
+            for (memory, step) in self.memories.iter_mut().zip(steps) {
+                memory.remember(&self.params.aim, &self.params.vodca, step.rows as usize);
+            }
+        }
+        self.before.clear();
+        self.before.extend_from_slice(steps);
+    }
+
+    /// The run has ended: shows the last frame and gives the terminal back.
+    pub fn close(&mut self) {
+        self.slot.end(self.last.take());
+        self.terminal = None;
+        if let Some(browser) = self.browser.take() {
+            browser.close();
+        }
+    }
+}
