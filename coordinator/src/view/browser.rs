@@ -144,7 +144,7 @@ mod tests {
     use super::super::frame::tests::sample;
     use super::*;
     use crate::record::samples;
-    use std::io::{Read, Write as _};
+    use std::io::Read;
     use std::net::TcpStream;
 
     fn open() -> (Arc<Slot>, BrowserView) {
