@@ -34,7 +34,7 @@ fn reference_loops_come_out_of_processes_byte_for_byte() {
         scenario.params = toml::Table::try_from(&params).expect("parameters have a TOML form");
         let home = tempfile::tempdir().expect("a folder for the test");
         let (layout, script) = (home.path().join("layout.toml"), home.path().join("horizons.csv"));
-        fs::write(&layout, scenario.to_toml()).expect("the scenario is written");
+        fs::write(&layout, scenario.to_toml().expect("a scenario has a TOML form")).expect("the scenario is written");
         let line = |(tick, horizons): (usize, &Vec<shared::horizon::Horizon>)| {
             let horizons: Vec<String> = horizons.iter().map(ToString::to_string).collect();
             format!("{tick},{}\n", horizons.join(","))

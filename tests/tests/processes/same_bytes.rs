@@ -18,7 +18,7 @@ fn in_process(scenario: &str, horizon: &str, profile: Profile, ticks: u64) -> St
 }
 
 /// What `team` does in `ticks` ticks, as a recorded run says it.
-pub fn trajectory(mut team: Team, ticks: u64, horizon: impl Fn(usize, u64) -> Horizon) -> String {
+pub(crate) fn trajectory(mut team: Team, ticks: u64, horizon: impl Fn(usize, u64) -> Horizon) -> String {
     let (mut text, mut positions) = (format!("{HEADER}\n"), Vec::new());
     for tick in 0..ticks {
         let steps = team.step(|robot| horizon(robot, tick));
