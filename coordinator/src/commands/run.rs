@@ -145,7 +145,7 @@ fn about(args: &Args, scenario: &Scenario, exchange: Kind) -> About {
             Kind::Relay => "relay".into(),
         },
         real_time: args.real_time,
-        command: std::env::args().collect(),
+        command: std::iter::once("./run.sh".to_string()).chain(std::env::args().skip(1)).collect(),
         versions: Versions::here(),
         machine: Machine::here(),
     }

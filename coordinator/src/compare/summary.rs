@@ -88,7 +88,7 @@ impl Comparison {
         };
         Self {
             version: VERSION,
-            command: std::env::args().collect(),
+            command: std::iter::once("./run.sh".to_string()).chain(std::env::args().skip(1)).collect(),
             seeds: plan.seeds.clone(),
             jitter_start: plan.jitter_start,
             sets: plan.sets.clone(),

@@ -40,9 +40,11 @@ impl Run {
 }
 
 /// The cell with its last digit changed.
+/// `cell` with its last digit, or its 15th of a long number, changed: further digits may not change the f64.
 fn last_digit(cell: &str) -> String {
-    let last = if cell.ends_with('5') { '6' } else { '5' };
-    format!("{}{last}", &cell[..cell.len() - 1])
+    let at = cell.len().min(16) - 1;
+    let digit = if cell[at..].starts_with('5') { '6' } else { '5' };
+    format!("{}{digit}{}", &cell[..at], &cell[at + 1..])
 }
 
 #[test]
