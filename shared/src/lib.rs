@@ -11,6 +11,7 @@ pub mod metrics;
 pub mod os;
 pub mod params;
 pub mod place;
+pub mod policy;
 pub mod prediction;
 pub mod random;
 pub mod scenario;

@@ -1,0 +1,3 @@
+//! x
+/// x
+pub fn x() { ort::set_api(ort_tract::api()); }

@@ -1,0 +1,12 @@
+//! What a policy file is: the ONNX bytes, the contract beside them and the folder they live in.
+//!
+//! This module is pure data and needs no inference library, so that the learner can write what the
+//! policy server reads without either building the other.
+
+pub mod contract;
+pub mod digest;
+pub mod folder;
+pub mod onnx;
+
+/// Largest model file that is read, bytes (16 MiB). An actor for 64 robots has about 0.5 MiB.
+pub const MAX_MODEL_BYTES: u64 = 16 << 20;
