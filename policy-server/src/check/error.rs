@@ -1,0 +1,236 @@
+//! Why a model may not act: one kind of error per rung of the ladder.
+
+use super::MAX_OPSET;
+use serde::{Deserialize, Serialize};
+use shared::policy::contract::ContractError;
+use shared::policy::onnx::OnnxError;
+
+/// Why a model may not act.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum CheckError {
+    /// The file cannot be read.
+    #[error("cannot read {file}: {reason}")]
+    Unreadable {
+        /// The file.
+        file: String,
+        /// The system's reason.
+        reason: String,
+    },
+    /// Over the size limit.
+    #[error("{file} has {bytes} bytes, more than the {limit} that are allowed (--max-bytes)")]
+    TooLarge {
+        /// The file.
+        file: String,
+        /// Its size.
+        bytes: u64,
+        /// Largest size.
+        limit: u64,
+    },
+    /// Not as long as its manifest says.
+    #[error("{file} has {has} bytes, its manifest says {says}: it is still being written, or was cut; copy it again")]
+    Cut {
+        /// The file.
+        file: String,
+        /// Bytes there.
+        has: u64,
+        /// Bytes stated.
+        says: u64,
+    },
+    /// Not the bytes that its manifest names.
+    #[error("{file} has sha256 {has}, its manifest says {says}: bytes have changed; publish it again")]
+    Sha256 {
+        /// The file.
+        file: String,
+        /// What its bytes give.
+        has: String,
+        /// What is stated.
+        says: String,
+    },
+    /// Not an ONNX file.
+    #[error("{file}: {source}")]
+    Onnx {
+        /// The file.
+        file: String,
+        /// Why.
+        source: OnnxError,
+    },
+    /// The contract cannot be used.
+    #[error(transparent)]
+    Contract(#[from] ContractError),
+    /// Weights in another file.
+    #[error(
+        "tensor `{tensor}` of {file} lies in another file; export the model as one file (torch.onnx.export(..., external_data=False))"
+    )]
+    ExternalData {
+        /// The file.
+        file: String,
+        /// The tensor.
+        tensor: String,
+    },
+    /// An operator set that is too new or missing.
+    #[error("{file} needs operator set {has}; allowed: 7..={MAX_OPSET} (torch.onnx.export(..., opset_version=17))")]
+    Opset {
+        /// The file.
+        file: String,
+        /// As stated, or `none`.
+        has: String,
+    },
+    /// An operator outside the list.
+    #[error("{file} uses operator {operator}, which no actor needs; allowed are plain feed-forward operators (Gemm, MatMul, Add, Relu, Tanh, Clip, ...)")]
+    Operator {
+        /// The file.
+        file: String,
+        /// The operator, with its domain.
+        operator: String,
+    },
+    /// NaN or infinite numbers in the file.
+    #[error("element {index} of tensor `{tensor}` of {file} is not a finite number; the training run has diverged: publish an earlier actor")]
+    Weights {
+        /// The file.
+        file: String,
+        /// The tensor.
+        tensor: String,
+        /// First element.
+        index: usize,
+    },
+    /// A model for another team.
+    #[error("{file} is for {has} robots, this run has {wanted}; choose a policy for {wanted} robots")]
+    Robots {
+        /// The file.
+        file: String,
+        /// Robots of the model.
+        has: usize,
+        /// Robots of the run.
+        wanted: usize,
+    },
+    /// An input or output that is missing.
+    #[error("{file} has no {role} `{name}`; it has {has}. Rename it in the contract or export it under that name")]
+    Name {
+        /// The file.
+        file: String,
+        /// input or output.
+        role: &'static str,
+        /// As the contract says.
+        name: String,
+        /// What there is.
+        has: String,
+    },
+    /// An input or output of the wrong type.
+    #[error("{role} `{name}` of {file} is {element}; allowed: float32")]
+    Element {
+        /// The file.
+        file: String,
+        /// input or output.
+        role: &'static str,
+        /// Its name.
+        name: String,
+        /// Its type.
+        element: String,
+    },
+    /// An input or output of the wrong shape.
+    #[error("{role} {port} of {file} does not fit: {robots} robots need [batch, {width}], batch free or 1")]
+    Shape {
+        /// The file.
+        file: String,
+        /// input or output.
+        role: &'static str,
+        /// Name, type and shape.
+        port: String,
+        /// Robots of the contract.
+        robots: usize,
+        /// Numbers per observation.
+        width: usize,
+    },
+    /// The reference set cannot be used.
+    #[error("reference set {file}: {reason}; write it again or remove it")]
+    ReferenceFile {
+        /// The file.
+        file: String,
+        /// Why.
+        reason: String,
+    },
+    /// Failed when it was tried.
+    #[error("{file}: {source}")]
+    Try {
+        /// The file.
+        file: String,
+        /// Why.
+        source: TryError,
+    },
+}
+
+/// Why a model failed when it was tried. Crosses from the trial process as JSON.
+#[derive(Clone, Debug, PartialEq, thiserror::Error, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum TryError {
+    /// The back-end refuses it.
+    #[error("the back-end cannot load the model: {0}")]
+    Load(String),
+    /// The back-end cannot compute it.
+    #[error("the back-end cannot compute the model: {0}")]
+    Run(String),
+    /// An output that the file promises and the back-end does not give.
+    #[error("the model gives no output `{0}`")]
+    MissingOutput(String),
+    /// An output of another size than promised.
+    #[error("output `{output}` has shape {shape:?} for one observation of {robots} robots; allowed: [1, {robots}]")]
+    OutputShape {
+        /// The output.
+        output: String,
+        /// What came.
+        shape: Vec<i64>,
+        /// Robots of the contract.
+        robots: usize,
+    },
+    /// NaN or infinite outputs.
+    #[error("the model answers observation {case} of the {set} set with a number that is not finite (robot {robot})")]
+    NotFinite {
+        /// canary or reference.
+        set: String,
+        /// Which observation.
+        case: usize,
+        /// First robot.
+        robot: usize,
+    },
+    /// Another answer than the reference set says.
+    #[error("reference {case}, robot {robot}: {output} is {got}, expected {expected} within {tolerance}; the file is not what was trained")]
+    Reference {
+        /// Which observation.
+        case: usize,
+        /// Which robot.
+        robot: usize,
+        /// mean, log_std or horizon.
+        output: String,
+        /// What came.
+        got: f64,
+        /// What the set says.
+        expected: f64,
+        /// How far they may differ.
+        tolerance: f64,
+    },
+    /// Over the time limit.
+    #[error("one inference takes {us} us of processor time (median of the canary set); the limit is {limit_us} us (--max-inference-us)")]
+    Slow {
+        /// Median, us.
+        us: u64,
+        /// Limit, us.
+        limit_us: u64,
+    },
+    /// The trial process did not end in time.
+    #[error("the model was still being loaded or computed after {seconds} s in a process of its own")]
+    Hung {
+        /// Limit, s.
+        seconds: u64,
+    },
+    /// The trial process died.
+    #[error("the model brought its trial process down ({how}); it may use {memory_mib} MiB")]
+    Crashed {
+        /// Exit status or signal.
+        how: String,
+        /// Memory limit, MiB.
+        memory_mib: u64,
+    },
+    /// The trial process could not be started.
+    #[error("cannot start the trial process: {0}")]
+    NoTrial(String),
+}
