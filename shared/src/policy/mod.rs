@@ -10,3 +10,8 @@ pub mod onnx;
 
 /// Largest model file that is read, bytes (16 MiB). An actor for 64 robots has about 0.5 MiB.
 pub const MAX_MODEL_BYTES: u64 = 16 << 20;
+
+/// The policies folder of a run: every version that acted in it.
+pub fn run_folder(run: &std::path::Path) -> std::path::PathBuf {
+    run.join("policy")
+}
