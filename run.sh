@@ -29,7 +29,13 @@ test) shift; cargo_release test --workspace "$@"; exit ;;
 [0-9]* | --scenario*) set -- run "$@" ;;
 esac
 case ${1-} in
-run) build coordinator agent ;;
+policy) build policy-server; shift; exec "$target/release/policy-server" "$@" ;;
+run)
+    case " $* " in
+    # Only runs with a policy need its server: the embedded back-end is the heaviest build of all.
+    *" --policy "* | *" --policy="*) build coordinator agent policy-server ;;
+    *) build coordinator agent ;;
+    esac ;;
 *) build coordinator ;;
 esac
 exec "$target/release/coordinator" "$@"

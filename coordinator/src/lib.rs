@@ -14,6 +14,7 @@ pub mod latency;
 pub mod launch;
 pub mod page;
 pub mod parallel;
+pub mod policy;
 pub mod progress;
 pub mod record;
 pub mod report;

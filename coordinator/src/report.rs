@@ -1,5 +1,6 @@
 //! What a user reads at the end of a run: a line per robot, and how it went.
 
+use crate::policy::{PolicySummary, VersionSummary};
 use crate::summary::{End, Summary};
 use crate::text_table::TextTable;
 use std::fmt::Write as _;
@@ -68,10 +69,38 @@ fn figures(summary: &Summary, folder: &Path) -> String {
         ("tick", format!("p50 {:.0} us, p99 {:.0} us", summary.tick_latency.p50_us, summary.tick_latency.p99_us)),
         ("folder", folder.display().to_string()),
     ];
-    lines.iter().fold(String::new(), |mut text, (name, value)| {
+    let policy = summary.policy.as_ref().map(policy_lines).unwrap_or_default();
+    lines.iter().chain(&policy).fold(String::new(), |mut text, (name, value)| {
         let _ = writeln!(text, "{name:<16}{value}"); // writing to a String cannot fail
         text
     })
+}
+
+fn policy_lines(policy: &PolicySummary) -> Vec<(&'static str, String)> {
+    let version = |acted: &VersionSummary| {
+        format!("{} {}, ticks {} to {}", acted.version, &acted.sha256[..12], acted.from_tick, acted.to_tick)
+    };
+    let (versions, speed) = (policy.versions.iter().map(version), &policy.inference);
+    let mut lines = vec![
+        ("policy", format!("{} ({})", policy.source.display(), versions.collect::<Vec<_>>().join("; "))),
+        ("inference", format!("p50 {:.0} us, p99 {:.0} us", speed.p50_us, speed.p99_us)),
+        (
+            "answers",
+            format!(
+                "{} in time, {} late (horizons held {} ticks, default {} ticks)",
+                policy.answered, policy.late, policy.held, policy.default_used
+            ),
+        ),
+    ];
+    if let Some(shadow) = &policy.shadow {
+        let share = 100.0 * shadow.differing as f64 / shadow.compared.max(1) as f64;
+        let value = format!(
+            "differs in {share:.1} % of {} horizons, by {:.2} steps on average, at most {}",
+            shadow.compared, shadow.mean_distance, shadow.max_distance
+        );
+        lines.push(("shadow", value));
+    }
+    lines
 }
 
 fn arrived(summary: &Summary) -> usize {

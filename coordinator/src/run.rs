@@ -5,9 +5,11 @@
 
 use crate::clock::{Clock, Overruns};
 use crate::launch::{self, Agents, LaunchError};
+use crate::policy::{PolicyError, PolicyOptions, PolicySource, PolicySummary};
 use crate::roster::{PeerLost, Roster};
+use agent::hearing::measured;
+use shared::Position;
 use shared::exchange::{Hub, Kind};
-use shared::horizon::Horizon;
 use shared::messages::{MAX_ROBOTS, Report, Stamps, kind};
 use shared::os;
 use shared::params::Params;
@@ -42,6 +44,8 @@ pub struct Options {
     pub exchange: Kind,
     /// SPEC of the horizons' source, or [`shared::team::POLICY`].
     pub horizons: String,
+    /// The policy that chooses them; then `horizons` is [`shared::team::POLICY`].
+    pub policy: Option<PolicyOptions>,
     /// Seed of everything random.
     pub seed: u64,
     /// One tick per sample time rather than as fast as possible.
@@ -63,6 +67,7 @@ impl Options {
             agents: Agents::Launch(launch::agent_program()?),
             exchange: Kind::default_for(scenario.robots.len()),
             horizons: "fixed:20".into(),
+            policy: None,
             seed: scenario.seed,
             real_time: false,
             max_ticks: scenario.max_ticks,
@@ -95,6 +100,9 @@ pub enum RunError {
     /// The exchange.
     #[error(transparent)]
     Exchange(#[from] ServiceError),
+    /// The policy server.
+    #[error(transparent)]
+    Policy(#[from] PolicyError),
     /// `iceoryx2.toml` cannot be written.
     #[error("cannot write {}: {source}", path.display())]
     Config {
@@ -149,7 +157,7 @@ pub struct Tick<'a> {
 }
 
 /// How a run went.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Ended {
     /// How it ended.
     pub outcome: Outcome,
@@ -157,6 +165,8 @@ pub struct Ended {
     pub ticks: u64,
     /// Ticks that began late (real time only).
     pub overruns: Overruns,
+    /// What the policy did.
+    pub policy: Option<PolicySummary>,
 }
 
 /// What a tick or the start came to.
@@ -180,10 +190,28 @@ pub struct Team {
     sample_time: f64,
     // Dropped in this order: first the processes, then our ports, last the files.
     roster: Roster,
+    policy: Option<PolicySource>,
     hub: Hub,
     place: OwnedPlace,
+    /// What a policy observes besides the robots' own reports.
+    measuring: Measuring,
     steps: Vec<Option<Step>>,
     stamps: Vec<Stamps>,
+}
+
+/// Where robots are at the start of the next tick, and how well that is measured.
+struct Measuring {
+    positions: Vec<Position>,
+    noise: f64,
+    seed: u64,
+}
+
+impl Measuring {
+    /// What each robot measures of itself at `tick`: the same draw that the robot makes.
+    fn measured(&self, tick: u64) -> impl Iterator<Item = Position> + '_ {
+        let Self { positions, noise, seed } = self;
+        positions.iter().enumerate().map(move |(robot, &at)| measured(at, *noise, *seed, robot, tick))
+    }
 }
 
 /// Deletes the run's shared files when dropped.
@@ -223,12 +251,22 @@ impl Team {
         let hub = Hub::create(options.exchange, &place.0, robots, file.epoch)?;
         // Only now: who finds this file finds the services as well.
         file.write(&options.run)?;
+        let policy = match options.policy.clone() {
+            Some(policy) => Some(PolicySource::start(policy, &place.0, &options.run, robots, file.epoch)?),
+            None => None,
+        };
         let names = scenario.robots.iter().map(|robot| robot.name.clone()).collect();
         let mut team = Self {
             roster: Roster::new(options.run.clone(), names),
             sample_time: params.model.sample_time,
+            policy,
             hub,
             place,
+            measuring: Measuring {
+                positions: scenario.robots.iter().map(|robot| robot.start).collect(),
+                noise: params.disturbance.noise,
+                seed: options.seed,
+            },
             steps: vec![None; robots],
             stamps: vec![Stamps::default(); robots],
             options,
@@ -260,8 +298,9 @@ impl Team {
             Wait::Stopped => Outcome::Stopped,
             Wait::Lost(lost) => Outcome::PeerLost(lost),
         };
+        let policy = self.policy.take().map(PolicySource::end).transpose();
         self.end(&outcome)?;
-        Ok(Ended { outcome, ticks, overruns: clock.overruns() })
+        Ok(Ended { outcome, ticks, overruns: clock.overruns(), policy: policy? })
     }
 
     /// Waits until every robot is there, and until all are connected.
@@ -291,10 +330,8 @@ impl Team {
         observer: &mut dyn FnMut(&Tick<'_>) -> Verdict,
         clock: &mut Clock,
         ticks: &mut u64,
-    ) -> Result<Outcome, ServiceError> {
+    ) -> Result<Outcome, RunError> {
         let mut finished = Vec::with_capacity(self.steps.len());
-        // Empty: robots ask their own source. A policy's answers for this very tick go here.
-        let horizons: [Option<Horizon>; 0] = [];
         for tick in 0..self.options.max_ticks {
             match self.pause(clock, tick, stop)? {
                 Wait::Done => {}
@@ -302,7 +339,12 @@ impl Team {
                 Wait::Lost(lost) => return Ok(Outcome::PeerLost(lost)),
             }
             self.roster.expect_all();
-            let announced = self.hub.announce(tick, &horizons)?;
+            // Empty: robots ask their own source.
+            let horizons = match &mut self.policy {
+                Some(policy) => policy.choose(tick, self.measuring.measured(tick), stop)?,
+                None => &[],
+            };
+            let announced = self.hub.announce(tick, horizons)?;
             let late = clock.begin(announced);
             let deadline = Instant::now() + self.options.tick_deadline;
             let done = self.collect(Some(tick), deadline, stop, |heard, robot, report| {
@@ -323,6 +365,9 @@ impl Team {
             let collected = os::now_ns();
             finished.clear();
             finished.extend(self.steps.iter_mut().filter_map(Option::take));
+            for (position, step) in self.measuring.positions.iter_mut().zip(&finished) {
+                *position = step.next_position;
+            }
             *ticks = tick + 1;
             let seen = Tick { tick, steps: &finished, stamps: &self.stamps, announced, collected, late };
             match observer(&seen) {

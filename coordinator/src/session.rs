@@ -1,5 +1,6 @@
 //! Everything that watches a run: record, metrics, timings, progress. Whoever produces the ticks hands them in.
 
+use crate::policy::PolicySummary;
 use crate::progress::Progress;
 use crate::record::latency::{self, LatencyWriter};
 use crate::record::{About, RecordError, Recorder, RunFolder};
@@ -68,11 +69,12 @@ impl Session {
     }
 
     /// Ends the record with its summary, for failed and interrupted runs as well. Gives the summary and
-    /// the folder.
-    pub fn finish(self, end: End) -> Result<(Summary, PathBuf), RecordError> {
+    /// the folder. `policy`: what the policy did, in a run with one.
+    pub fn finish(self, end: End, policy: Option<PolicySummary>) -> Result<(Summary, PathBuf), RecordError> {
         self.progress.finish();
         let names = (self.about.profile.as_str(), self.about.horizon.as_str());
-        let summary = Summary::new(&self.scenario, &self.params, names, end, self.metrics.finish(), &self.timings);
+        let mut summary = Summary::new(&self.scenario, &self.params, names, end, self.metrics.finish(), &self.timings);
+        summary.policy = policy;
         let folder = self.recorder.finish(&summary)?;
         Ok((summary, folder))
     }

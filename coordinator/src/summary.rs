@@ -2,6 +2,7 @@
 
 use crate::guarantee;
 use crate::latency::{Latency, Percentiles};
+use crate::policy::PolicySummary;
 use serde::{Deserialize, Serialize};
 use shared::metrics::RunSummary;
 use shared::params::Params;
@@ -48,6 +49,9 @@ pub struct Summary {
     pub tick_latency: Percentiles,
     /// From having all messages to having a plan, by robot.
     pub solve_latency: Vec<Percentiles>,
+    /// What the policy did, in a run with one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub policy: Option<PolicySummary>,
 }
 
 impl Summary {
@@ -70,6 +74,7 @@ impl Summary {
             run,
             tick_latency: timings.tick.percentiles(),
             solve_latency: timings.solve.iter().map(Latency::percentiles).collect(),
+            policy: None,
         }
     }
 }

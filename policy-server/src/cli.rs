@@ -3,6 +3,7 @@
 use crate::actor::BackEnd;
 use crate::check::{Limits, Prober, probe};
 use crate::commands::{check, contract, control, eval, new, publish};
+use crate::serve;
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -36,6 +37,8 @@ enum Command {
     Publish(publish::PublishArgs),
     /// Ask a policy about a list of observations
     Eval(eval::EvalArgs),
+    /// Serve a run (the coordinator does that; by hand after a crash)
+    Serve(serve::ServeArgs),
     /// What the policy server of a run does
     Status(control::StatusArgs),
     /// Let another model act in a run, from between two ticks on
@@ -83,6 +86,7 @@ impl Cli {
             Command::New(args) => new::run(&args),
             Command::Publish(args) => publish::run(&args),
             Command::Eval(args) => eval::run(&args),
+            Command::Serve(args) => serve::run(&args).map(|()| ExitCode::SUCCESS),
             Command::Status(args) => control::status(&args),
             Command::Swap(args) => control::swap(&args),
             Command::Rollback(args) => control::rollback(&args),

@@ -7,7 +7,7 @@ use shared::Position;
 use shared::horizon::Horizon;
 use shared::policy::folder::{Serving, Version};
 use std::mem;
-use std::sync::mpsc::{Receiver, Sender};
+use std::sync::mpsc::{Receiver, Sender, channel};
 
 /// A model that is loaded, warm and checked.
 pub struct Loaded {
@@ -83,6 +83,13 @@ impl HotSwap {
     pub fn new(robots: usize, orders: Receiver<Order>, events: Sender<Event>) -> Self {
         let answer = Answer { mean: Vec::with_capacity(robots), log_std: Vec::with_capacity(robots) };
         Self { current: None, previous: None, orders, events, answer, input: vec![0.0; 2 * robots] }
+    }
+
+    /// One model for good, without a loader: a shadow.
+    pub fn always(robots: usize, model: Loaded) -> Self {
+        // Both far ends are gone at once: nobody orders, nobody listens.
+        let (orders, events) = (channel().1, channel().0);
+        Self { current: Some(Box::new(model)), ..Self::new(robots, orders, events) }
     }
 
     /// What acts.

@@ -13,3 +13,4 @@ pub mod hot_swap;
 pub mod loader;
 pub mod random_actor;
 pub mod sample;
+pub mod serve;

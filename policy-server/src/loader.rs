@@ -65,7 +65,8 @@ impl Loader {
     pub fn start(watched: Watched, prober: Prober, orders: Sender<Order>) -> Result<Self, StartError> {
         let runtime = Runtime::start(&prober.back_end)?;
         let status = Status { pid: std::process::id(), ..Status::default() };
-        let seen_upstream = watched.upstream.as_deref().and_then(|path| see(&shared::policy::folder::resolve(path).ok()?));
+        let seen_upstream =
+            watched.upstream.as_deref().and_then(|path| see(&shared::policy::folder::resolve(path).ok()?));
         let mut loader =
             Self { watched, prober, runtime, orders, status, refused: BTreeSet::new(), seen: None, seen_upstream };
         let folder = &loader.watched.folder;
@@ -149,7 +150,9 @@ impl Loader {
         let is = |serving: &Option<shared::policy::folder::Serving>| {
             serving.as_ref().is_some_and(|serving| serving.sha256 == digest)
         };
-        let order = if is(&self.status.serving) && self.status.serving.as_ref().is_some_and(|s| s.version == version.to_string()) {
+        let order = if is(&self.status.serving)
+            && self.status.serving.as_ref().is_some_and(|s| s.version == version.to_string())
+        {
             return true;
         } else if is(&self.status.previous) {
             Order::Rollback(version)
@@ -171,7 +174,8 @@ impl Loader {
         self.prober.try_out(candidate)?;
         let failed = |source: TryError| CheckError::Try { file: candidate.file.display().to_string(), source };
         let Candidate { bytes, contract, reference, sha256, .. } = candidate;
-        let (actor, report) = try_out(&self.runtime, bytes, contract, reference.as_ref(), &self.prober.limits).map_err(failed)?;
+        let (actor, report) =
+            try_out(&self.runtime, bytes, contract, reference.as_ref(), &self.prober.limits).map_err(failed)?;
         info!(
             "policy {version} (sha256 {}) is warm after {} us, {} us per inference",
             &sha256[..12],

@@ -124,6 +124,80 @@ pub struct Report {
     pub horizon: u8,
 }
 
+/// What a policy is asked at a tick. Published by the coordinator before it announces `tick`; valid
+/// for that tick only. A server that misses it misses the tick.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct Observation {
+    /// Run identity, as in [`Announcement::epoch`].
+    pub epoch: u64,
+    /// k, the tick the horizons are wanted for.
+    pub tick: u64,
+    /// When it was published, ns.
+    pub stamp: u64,
+    /// Number of robots, n.
+    pub robots: u64,
+    /// Measured positions at the start of the tick, m; entries beyond n mean nothing.
+    pub positions: [[f64; 2]; MAX_ROBOTS],
+}
+
+/// What a policy answers. Published by the policy server; valid for `tick` only. The coordinator
+/// hands the horizons on with its [`Announcement`]; without them it takes older ones.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct PolicyAnswer {
+    /// Run identity, as in [`Announcement::epoch`].
+    pub epoch: u64,
+    /// k, as in the [`Observation`].
+    pub tick: u64,
+    /// Stamp of the observation that is answered, ns.
+    pub asked: u64,
+    /// When the server had read it, ns.
+    pub read: u64,
+    /// When it was answered, ns.
+    pub stamp: u64,
+    /// One of [`answer`].
+    pub kind: u32,
+    /// Number of the version that acts, 17 for v000017.
+    pub version: u32,
+    /// SHA-256 of its file.
+    pub sha256: [u8; 32],
+    /// N_i^k by robot.
+    pub horizons: [u8; MAX_ROBOTS],
+}
+
+/// What a [`PolicyAnswer`] is.
+pub mod answer {
+    /// A server has come; no horizons.
+    pub const HELLO: u32 = 1;
+    /// The horizons of `tick`.
+    pub const HORIZONS: u32 = 2;
+    /// No model can answer at `tick`.
+    pub const NONE: u32 = 3;
+    /// What the shadow would have chosen at `tick`.
+    pub const SHADOW: u32 = 4;
+}
+
+impl PolicyAnswer {
+    /// An answer that says nothing yet.
+    pub const EMPTY: PolicyAnswer = PolicyAnswer {
+        epoch: 0,
+        tick: 0,
+        asked: 0,
+        read: 0,
+        stamp: 0,
+        kind: 0,
+        version: 0,
+        sha256: [0; 32],
+        horizons: [0; MAX_ROBOTS],
+    };
+
+    /// The horizons of `robots` robots; `None` when one is outside 1..=49 (a message is never trusted).
+    pub fn horizons(&self, robots: usize) -> Option<Vec<Horizon>> {
+        self.horizons.get(..robots)?.iter().map(|&steps| Horizon::new(u64::from(steps)).ok()).collect()
+    }
+}
+
 impl Plan {
     /// A plan that says nothing.
     pub const EMPTY: Plan = Plan {
@@ -271,6 +345,8 @@ mod tests {
     #[test]
     fn payloads_have_no_hidden_padding() {
         assert_eq!(size_of::<Announcement>(), 3 * 8 + 2 * 4 + MAX_ROBOTS);
+        assert_eq!(size_of::<Observation>(), 4 * 8 + MAX_ROBOTS * 16);
+        assert_eq!(size_of::<PolicyAnswer>(), 5 * 8 + 2 * 4 + 32 + MAX_ROBOTS);
         assert_eq!(size_of::<Plan>(), 3 * 8 + 2 * 4 + 16 + 50 * 16);
         assert_eq!(size_of::<Report>(), size_of::<Plan>() + 8 + 48 + 8 + 5 * 8 + 8);
     }

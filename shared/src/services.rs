@@ -5,7 +5,7 @@
 //! *Invariant*: the coordinator creates every service before a robot starts; robots only open. A
 //! service whose creator died half-way never heals, only deleting the run's files helps.
 
-use crate::messages::{Announcement, MAX_ROBOTS, Plan, Report};
+use crate::messages::{Announcement, MAX_ROBOTS, Observation, Plan, PolicyAnswer, Report};
 use crate::place::Place;
 use iceoryx2::port::listener::{Listener, ListenerWaitError};
 use iceoryx2::port::notifier::Notifier;
@@ -19,6 +19,10 @@ use iceoryx2::service::builder::publish_subscribe::PublishSubscribeOpenError as 
 use iceoryx2::service::port_factory::{event, publish_subscribe};
 use std::fmt::Debug;
 use std::time::{Duration, Instant};
+
+mod policy;
+
+pub use policy::{PolicyAsker, PolicyPort};
 
 type Ipc = ipc::Service;
 type Channel<Payload, Header = ()> = publish_subscribe::PortFactory<Ipc, Payload, Header>;
@@ -51,7 +55,7 @@ fn failed(place: &Place, what: &str, which: &str, reason: impl Debug) -> Service
     ServiceError { what: format!("{what} {which}"), reason: format!("{reason:?}"), place: place.to_string() }
 }
 
-// SAFETY of these three: `repr(C)`, only numbers and arrays of them, no pointers, no padding (tested).
+// SAFETY of these: `repr(C)`, only numbers and arrays of them, no pointers, no padding (tested).
 unsafe impl ZeroCopySend for Announcement {
     unsafe fn type_name() -> &'static str {
         "vodca/Announcement/1"
@@ -65,6 +69,16 @@ unsafe impl ZeroCopySend for Plan {
 unsafe impl ZeroCopySend for Report {
     unsafe fn type_name() -> &'static str {
         "vodca/Report/1"
+    }
+}
+unsafe impl ZeroCopySend for Observation {
+    unsafe fn type_name() -> &'static str {
+        "vodca/Observation/1"
+    }
+}
+unsafe impl ZeroCopySend for PolicyAnswer {
+    unsafe fn type_name() -> &'static str {
+        "vodca/PolicyAnswer/1"
     }
 }
 impl Default for Announcement {
@@ -130,13 +144,7 @@ impl Services {
     }
 
     fn new(place: &Place, robots: usize, peer: bool, role: Role) -> Result<Self, ServiceError> {
-        // Signals are ours (`stop.rs`).
-        let node = NodeBuilder::new()
-            .config(&config(place)?)
-            .signal_handling_mode(SignalHandlingMode::Disabled)
-            .create::<Ipc>()
-            .map_err(|error| failed(place, "join", "the run", error))?;
-        let maker = Maker { node, place, role, everyone: robots + 1 + HEAD_ROOM, few: 1 + HEAD_ROOM };
+        let maker = Maker::new(place, robots, role)?;
         Ok(Self {
             announcements: maker.announcements("vodca/announcements")?,
             reports: maker.channel("vodca/reports", maker.everyone, maker.few)?,
@@ -203,7 +211,17 @@ struct Maker<'a> {
     few: usize,
 }
 
-impl Maker<'_> {
+impl<'a> Maker<'a> {
+    fn new(place: &'a Place, robots: usize, role: Role) -> Result<Self, ServiceError> {
+        // Signals are ours (`stop.rs`).
+        let node = NodeBuilder::new()
+            .config(&config(place)?)
+            .signal_handling_mode(SignalHandlingMode::Disabled)
+            .create::<Ipc>()
+            .map_err(|error| failed(place, "join", "the run", error))?;
+        Ok(Self { node, place, role, everyone: robots + 1 + HEAD_ROOM, few: 1 + HEAD_ROOM })
+    }
+
     fn announcements(&self, name: &str) -> Result<Channel<[Plan], Announcement>, ServiceError> {
         self.make(name, still_being_made, |name| {
             let builder = self.node.service_builder(name).publish_subscribe::<[Plan]>().user_header::<Announcement>();

@@ -1,5 +1,6 @@
 //! `run`: a team with one process per robot.
 
+use super::run_policy::PolicyArgs;
 use crate::commands::report as page;
 use crate::exit::{self, Ending, Failure};
 use crate::launch::Agents;
@@ -28,6 +29,7 @@ Examples:
   ./run.sh 4 --scenario four_gate --horizon random:3
   ./run.sh 2 --profile paper --horizon fixed:9,40
   ./run.sh 8 --scenario my_layout.toml --set vodca.rows=each --out my_run
+  ./run.sh 14 --policy policies/ex14_d
   ./run.sh 14 --horizon script:runs/20260131-120000-ex14_d-14/horizons.csv
 Without --scenario: 2 two_setpoint, 4 four_gate, 14 ex14_d, otherwise a ring.
 Exit codes: 0 arrived, or asked to stop; 1 not arrived or collided; 2 wrong usage; 3 a robot's process was lost.")]
@@ -41,6 +43,11 @@ pub struct Args {
     /// Where horizons come from: fixed:20, fixed:9,40 (one per robot), random:SEED, script:FILE
     #[arg(long, value_name = "SPEC", default_value = "fixed:20")]
     horizon: HorizonSpec,
+    /// ONNX file or policies folder that chooses the horizons at every tick, instead of --horizon
+    #[arg(long, value_name = "PATH", conflicts_with = "horizon")]
+    policy: Option<PathBuf>,
+    #[command(flatten)]
+    use_policy: PolicyArgs,
     /// Parameter set: safe, paper, orca or orca-rh
     #[arg(long, value_name = "NAME", default_value = "safe")]
     profile: Profile,
@@ -101,7 +108,11 @@ pub fn run(args: Args) -> Ending {
         .map_err(Failure::usage)?;
     let folder =
         RunFolder::create(args.out.as_deref(), &scenario.name, scenario.robots.len()).map_err(Failure::usage)?;
-    let options = options(&args, &scenario, &folder)?;
+    let mut options = options(&args, &scenario, &folder)?;
+    if let Some(policy) = &args.policy {
+        options.policy = Some(args.use_policy.options(policy, &scenario)?);
+        options.horizons = shared::team::POLICY.into();
+    }
     let wanted = Wanted { terminal: args.tui, browser: args.live, horizons: options.horizons.clone() };
     let views = Views::open(wanted, &scenario, &params).map_err(Failure::usage)?;
     let mut session = Session::start(folder, &scenario, &params, about(&args, &scenario, options.exchange))
@@ -138,7 +149,10 @@ fn about(args: &Args, scenario: &Scenario, exchange: Kind) -> About {
         scenario: scenario.name.clone(),
         robots: scenario.robots.len(),
         profile: args.profile.to_string(),
-        horizon: args.horizon.to_string(),
+        horizon: match &args.policy {
+            Some(policy) => format!("policy:{}", policy.display()),
+            None => args.horizon.to_string(),
+        },
         seed: scenario.seed,
         exchange: match exchange {
             Kind::Peer => "peer".into(),
@@ -187,7 +201,7 @@ fn play(
         Outcome::Stopped => End::Interrupted,
         Outcome::PeerLost(_) | Outcome::Abandoned => End::PeerLost,
     };
-    let (summary, folder) = session.finish(end).map_err(Failure::broken)?;
+    let (summary, folder) = session.finish(end, ended.policy.clone()).map_err(Failure::broken)?;
     print!("{}", report(&summary, &folder));
     if ended.overruns.count > 0 {
         println!(

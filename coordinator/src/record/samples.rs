@@ -74,5 +74,5 @@ pub(crate) fn record_run(folder: &std::path::Path, scenario: &str, params: &shar
         session.tick(tick, steps, Duration::from_micros(5)).map(|_| ())
     })
     .unwrap();
-    session.finish(crate::summary::End::OutOfTicks).unwrap();
+    session.finish(crate::summary::End::OutOfTicks, None).unwrap();
 }

@@ -76,7 +76,9 @@ pub enum CheckError {
         has: String,
     },
     /// An operator outside the list.
-    #[error("{file} uses operator {operator}, which no actor needs; allowed are plain feed-forward operators (Gemm, MatMul, Add, Relu, Tanh, Clip, ...)")]
+    #[error(
+        "{file} uses operator {operator}, which no actor needs; allowed are plain feed-forward operators (Gemm, MatMul, Add, Relu, Tanh, Clip, ...)"
+    )]
     Operator {
         /// The file.
         file: String,
@@ -84,7 +86,9 @@ pub enum CheckError {
         operator: String,
     },
     /// NaN or infinite numbers in the file.
-    #[error("element {index} of tensor `{tensor}` of {file} is not a finite number; the training run has diverged: publish an earlier actor")]
+    #[error(
+        "element {index} of tensor `{tensor}` of {file} is not a finite number; the training run has diverged: publish an earlier actor"
+    )]
     Weights {
         /// The file.
         file: String,
@@ -193,7 +197,9 @@ pub enum TryError {
         robot: usize,
     },
     /// Another answer than the reference set says.
-    #[error("reference {case}, robot {robot}: {output} is {got}, expected {expected} within {tolerance}; the file is not what was trained")]
+    #[error(
+        "reference {case}, robot {robot}: {output} is {got}, expected {expected} within {tolerance}; the file is not what was trained"
+    )]
     Reference {
         /// Which observation.
         case: usize,
@@ -209,7 +215,9 @@ pub enum TryError {
         tolerance: f64,
     },
     /// Over the time limit.
-    #[error("one inference takes {us} us of processor time (median of the canary set); the limit is {limit_us} us (--max-inference-us)")]
+    #[error(
+        "one inference takes {us} us of processor time (median of the canary set); the limit is {limit_us} us (--max-inference-us)"
+    )]
     Slow {
         /// Median, us.
         us: u64,

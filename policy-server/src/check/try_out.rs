@@ -64,8 +64,7 @@ pub fn try_out(
         finite(&answer, "reference", index)?;
         case.compare(&answer, contract, reference.map_or(0.0, |set| set.tolerance), index)?;
     }
-    let report =
-        Report { load_us, inference_ns, canary_cases: times.len(), reference_cases: cases.len() };
+    let report = Report { load_us, inference_ns, canary_cases: times.len(), reference_cases: cases.len() };
     Ok((actor, report))
 }
 

@@ -46,7 +46,7 @@ pub(crate) fn status(args: &StatusArgs) -> anyhow::Result<ExitCode> {
 
 pub(crate) fn swap(args: &SwapArgs) -> anyhow::Result<ExitCode> {
     let (folder, status) = open(&args.run)?;
-    let robots = shared::team::TeamFile::read(&args.run)?.robots;
+    let robots = shared::team::Setup::load(&args.run)?.team.robots;
     let (candidate, _) = args.means.prober()?.check(&resolve(&args.new)?, Some(robots))?;
     let version = import(&folder, &candidate)?;
     wait_for(&folder, version, &status)
@@ -64,9 +64,9 @@ pub(crate) fn rollback(args: &RollbackArgs) -> anyhow::Result<ExitCode> {
 
 fn open(run: &Path) -> anyhow::Result<(PolicyFolder, Status)> {
     let folder = PolicyFolder::new(run_folder(run));
-    let status = folder.read_status()?.with_context(|| {
-        format!("no policy server has served {}; start the run with --policy PATH", run.display())
-    })?;
+    let status = folder
+        .read_status()?
+        .with_context(|| format!("no policy server has served {}; start the run with --policy PATH", run.display()))?;
     Ok((folder, status))
 }
 

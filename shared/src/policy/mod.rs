@@ -7,6 +7,7 @@ pub mod contract;
 pub mod digest;
 pub mod folder;
 pub mod onnx;
+pub mod settings;
 
 /// Largest model file that is read, bytes (16 MiB). An actor for 64 robots has about 0.5 MiB.
 pub const MAX_MODEL_BYTES: u64 = 16 << 20;

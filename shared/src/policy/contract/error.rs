@@ -50,7 +50,9 @@ pub enum ContractError {
         allowed: String,
     },
     /// Two contracts of one model that differ.
-    #[error("the contract beside the model says {field} = {beside}, the one inside it says {inside}; publish the model again")]
+    #[error(
+        "the contract beside the model says {field} = {beside}, the one inside it says {inside}; publish the model again"
+    )]
     Disagree {
         /// First field that differs.
         field: String,

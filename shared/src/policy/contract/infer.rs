@@ -37,7 +37,10 @@ pub fn infer(model: &Model) -> Result<Found, ContractError> {
     contract.opset = model.opset();
     contract.producer = Some(model.producer.clone()).filter(|producer| !producer.is_empty());
     let notes = vec![
-        format!("no contract: {robots} robots, input `{}` and mean `{}` are read from the model", input.name, mean.name),
+        format!(
+            "no contract: {robots} robots, input `{}` and mean `{}` are read from the model",
+            input.name, mean.name
+        ),
         "assumed: positions in metres enter as they are (scale 1, offset 0)".into(),
         "assumed: the mean is not squashed yet (action_map \"tanh\")".into(),
         "no sha256 is stated, so a flipped byte would not be noticed; `policy publish` adds it".into(),

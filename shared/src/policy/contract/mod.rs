@@ -214,12 +214,7 @@ impl Contract {
 
 impl Default for Observation {
     fn default() -> Self {
-        Self {
-            kind: ObservationKind::Positions,
-            layout: Layout::XyInterleaved,
-            offset: [0.0, 0.0],
-            scale: one(),
-        }
+        Self { kind: ObservationKind::Positions, layout: Layout::XyInterleaved, offset: [0.0, 0.0], scale: one() }
     }
 }
 

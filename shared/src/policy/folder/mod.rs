@@ -161,12 +161,7 @@ impl PolicyFolder {
     }
 
     /// [`PolicyFolder::add`], then [`PolicyFolder::set_current`].
-    pub fn publish(
-        &self,
-        model: &[u8],
-        contract: &Contract,
-        reference: Option<&str>,
-    ) -> Result<Version, FolderError> {
+    pub fn publish(&self, model: &[u8], contract: &Contract, reference: Option<&str>) -> Result<Version, FolderError> {
         let version = self.add(model, contract, reference)?;
         self.set_current(version)?;
         Ok(version)

@@ -191,8 +191,7 @@ impl Model {
     }
 
     fn read_node(&mut self, bytes: &[u8]) -> Result<Node, OnnxError> {
-        let mut node =
-            Node { name: String::new(), operator: String::new(), domain: String::new(), subgraph: false };
+        let mut node = Node { name: String::new(), operator: String::new(), domain: String::new(), subgraph: false };
         for field in Fields::new(bytes) {
             match field? {
                 (3, Value::Bytes(name)) => node.name = text(name),

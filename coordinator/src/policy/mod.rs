@@ -1,0 +1,220 @@
+//! Horizons from a policy server: asks it before every tick, waits within bounds, and bridges its
+//! absence. A run never ends because of it.
+
+mod fallback;
+mod record;
+mod server;
+mod summary;
+
+pub use self::server::{ServerError, server_program};
+pub use self::summary::{PolicySummary, ShadowSummary, VersionSummary};
+
+use self::fallback::Bridge;
+use self::record::PolicyRecord;
+use self::server::ServerProcess;
+use self::summary::Tally;
+use crate::record::RecordError;
+use shared::Position;
+use shared::horizon::Horizon;
+use shared::messages::{MAX_ROBOTS, Observation, PolicyAnswer, answer};
+use shared::os;
+use shared::place::Place;
+use shared::policy::settings::{PolicySettings, SettingsError};
+use shared::services::{PolicyAsker, ServiceError};
+use shared::stop::StopFlag;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+/// How often a waiting coordinator looks whether the server lives.
+const LOOK_AROUND: Duration = Duration::from_millis(20);
+
+/// How a run uses a policy.
+#[derive(Clone, Debug)]
+pub struct PolicyOptions {
+    /// The server's program.
+    pub program: PathBuf,
+    /// What goes into `policy.toml`.
+    pub settings: PolicySettings,
+    /// How long a tick waits for its answer.
+    pub wait: Duration,
+    /// Ticks in a row for which robots keep their last horizon when none comes.
+    pub hold: u64,
+    /// The horizon after that.
+    pub default: Horizon,
+}
+
+/// Why a run with a policy cannot start, or its record cannot go on.
+#[derive(Debug, thiserror::Error)]
+pub enum PolicyError {
+    /// The server does not start.
+    #[error(transparent)]
+    Server(#[from] ServerError),
+    /// `policy.toml`.
+    #[error(transparent)]
+    Settings(#[from] SettingsError),
+    /// The exchange.
+    #[error(transparent)]
+    Exchange(#[from] ServiceError),
+    /// `policy.csv` or `shadow.csv`.
+    #[error(transparent)]
+    Record(#[from] RecordError),
+}
+
+/// Where the horizons of a tick came from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Source {
+    /// The policy, for this very tick.
+    Policy,
+    /// The newest answer, kept.
+    Held,
+    /// The configured default.
+    Default,
+}
+
+/// The policy server of a run, as the coordinator sees it.
+pub struct PolicySource {
+    // Dropped in this order: the process before the ports.
+    process: ServerProcess,
+    asker: PolicyAsker,
+    options: PolicyOptions,
+    robots: usize,
+    epoch: u64,
+    /// Whether waiting makes sense. A server that let a tick down is not waited for until it speaks again.
+    present: bool,
+    bridge: Bridge,
+    record: PolicyRecord,
+    tally: Tally,
+    horizons: Vec<Option<Horizon>>,
+}
+
+impl PolicySource {
+    /// Makes the services, writes `policy.toml` and starts the server. `team.toml` must be there.
+    pub fn start(
+        options: PolicyOptions,
+        place: &Place,
+        run: &Path,
+        robots: usize,
+        epoch: u64,
+    ) -> Result<Self, PolicyError> {
+        let asker = PolicyAsker::create(place)?;
+        options.settings.write(run)?;
+        Ok(Self {
+            process: ServerProcess::start(&options.program, run)?,
+            asker,
+            robots,
+            epoch,
+            present: false,
+            bridge: Bridge::new(robots, options.hold, options.default),
+            record: PolicyRecord::create(run, robots, options.settings.shadow.is_some())?,
+            tally: Tally::new(options.settings.policy.clone(), options.settings.shadow.clone()),
+            horizons: vec![None; robots],
+            options,
+        })
+    }
+
+    /// Waits until the server has loaded the policy. A policy that cannot act at the start ends the run
+    /// before it begins. `false`: somebody asked to stop.
+    pub fn gather(&mut self, deadline: Instant, stop: &StopFlag) -> Result<bool, PolicyError> {
+        loop {
+            while let Some(answer) = self.asker.receive()? {
+                self.present |= answer.epoch == self.epoch;
+            }
+            if self.present {
+                return Ok(true);
+            }
+            if stop.is_set() {
+                return Ok(false);
+            }
+            self.process.must_live(deadline)?;
+            self.asker.wait(LOOK_AROUND)?;
+        }
+    }
+
+    /// The horizons of `tick`, by robot, for robots measured at `positions`.
+    pub fn choose(
+        &mut self,
+        tick: u64,
+        positions: impl Iterator<Item = Position>,
+        stop: &StopFlag,
+    ) -> Result<&[Option<Horizon>], PolicyError> {
+        let mut question = Observation {
+            epoch: self.epoch,
+            tick,
+            stamp: 0,
+            robots: self.robots as u64,
+            positions: [[0.0; 2]; MAX_ROBOTS],
+        };
+        for (to, position) in question.positions.iter_mut().zip(positions) {
+            *to = position.into();
+        }
+        question.stamp = os::now_ns();
+        // What fails between the two processes is a missing answer and not the end of the run.
+        let answer = match self.asker.ask(question) {
+            Ok(()) => self.await_answer(tick, stop)?,
+            Err(error) => {
+                tracing::warn!("tick {tick}: {error}");
+                None
+            }
+        };
+        let horizons = answer.as_ref().and_then(|answer| answer.horizons(self.robots));
+        if let (Some(answer), Some(_)) = (&answer, &horizons) {
+            self.tally.answered(answer, os::now_ns());
+        }
+        let source = self.bridge.take(horizons);
+        self.tally.tick(tick, source, answer.as_ref());
+        self.record.tick(tick, source, answer.as_ref())?;
+        for (to, horizon) in self.horizons.iter_mut().zip(self.bridge.horizons()) {
+            *to = Some(*horizon);
+        }
+        Ok(&self.horizons)
+    }
+
+    /// The answer for `tick`; `None`: it did not come in time.
+    fn await_answer(&mut self, tick: u64, stop: &StopFlag) -> Result<Option<PolicyAnswer>, PolicyError> {
+        let deadline = Instant::now() + self.options.wait;
+        loop {
+            while let Some(answer) = self.asker.receive()? {
+                if answer.epoch != self.epoch {
+                    continue;
+                }
+                self.present = true;
+                match answer.kind {
+                    answer::SHADOW => self.shadow(&answer)?,
+                    answer::HORIZONS | answer::NONE if answer.tick == tick => {
+                        return Ok(Some(answer).filter(|answer| answer.kind == answer::HORIZONS));
+                    }
+                    answer::HORIZONS => self.tally.too_late(),
+                    _ => {}
+                }
+            }
+            let left = deadline.saturating_duration_since(Instant::now());
+            if !self.present || left.is_zero() || stop.is_set() || self.process.has_ended() {
+                if self.present && !stop.is_set() {
+                    tracing::warn!("the policy server gave no answer for tick {tick}; robots keep their horizons");
+                    self.present = false;
+                }
+                return Ok(None);
+            }
+            self.asker.wait(left.min(LOOK_AROUND))?;
+        }
+    }
+
+    fn shadow(&mut self, answer: &PolicyAnswer) -> Result<(), PolicyError> {
+        let Some(horizons) = answer.horizons(self.robots) else { return Ok(()) };
+        self.tally.shadow(answer, &horizons, self.bridge.horizons());
+        Ok(self.record.shadow(answer.tick, &horizons)?)
+    }
+
+    /// Ends the server and says how it went.
+    pub fn end(mut self) -> Result<PolicySummary, PolicyError> {
+        // The shadow's answer for the last tick may still be there.
+        while let Some(answer) = self.asker.receive()? {
+            if answer.epoch == self.epoch && answer.kind == answer::SHADOW {
+                self.shadow(&answer)?;
+            }
+        }
+        self.process.end();
+        self.record.finish()?;
+        Ok(self.tally.summary())
+    }
+}

@@ -1,0 +1,185 @@
+//! `policy serve`: answers the coordinator's observations until the run ends.
+
+use crate::actor::{BackEnd, Runtime};
+use crate::check::{Limits, Prober, look, try_out};
+use crate::hot_swap::{HotSwap, Loaded};
+use crate::loader::{Loader, Watched, import};
+use crate::sample::Choice;
+use anyhow::{Context, bail};
+use shared::Position;
+use shared::horizon::Horizon;
+use shared::messages::{Observation, PolicyAnswer, answer};
+use shared::os;
+use shared::policy::folder::{PolicyFolder, Version, resolve};
+use shared::policy::run_folder;
+use shared::policy::settings::PolicySettings;
+use shared::services::PolicyPort;
+use shared::stop::StopFlag;
+use shared::team::{Setup, TeamFile};
+use std::path::{Path, PathBuf};
+use std::sync::mpsc;
+use std::time::Duration;
+use tracing::info;
+
+/// How often an idle server looks whether the run still is there.
+const LOOK_AROUND: Duration = Duration::from_millis(100);
+
+/// Arguments of `serve`.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Example, after the server of a running team has died:\n  \
+    ./run.sh policy serve --run runs/20260131-120000-ex14_d-14\n\
+    The run's policy.toml says the rest.")]
+pub struct ServeArgs {
+    /// Folder of the run
+    #[arg(long, value_name = "DIR")]
+    run: PathBuf,
+    /// Process to end with (the coordinator gives its own)
+    #[arg(long, value_name = "PID", hide = true)]
+    parent: Option<u32>,
+}
+
+/// Serves the run.
+pub fn run(args: &ServeArgs) -> anyhow::Result<()> {
+    let stop = StopFlag::install()?;
+    if let Some(parent) = args.parent
+        && !os::die_with_parent(parent)
+    {
+        bail!("process {parent}, which started this server, has ended");
+    }
+    let team = Setup::load(&args.run)?.team;
+    let settings = PolicySettings::read(&args.run)?;
+    let folder = PolicyFolder::new(run_folder(&args.run));
+    let back_end = settings.onnxruntime.clone().map_or(BackEnd::Embedded, BackEnd::Library);
+    let prober = Prober { program: std::env::current_exe()?, back_end, limits: Limits::default() };
+    if folder.current()?.is_none() {
+        let candidate = look(&resolve(&settings.policy)?, Some(team.robots), &prober.limits)?;
+        import(&folder, &candidate)?;
+    }
+    let (orders, ordered) = mpsc::channel();
+    let (events, happened) = mpsc::channel();
+    let watched = Watched {
+        folder,
+        robots: team.robots,
+        upstream: Some(settings.policy.clone()),
+        poll: Duration::from_millis(settings.poll_ms.clamp(1, 10_000)),
+    };
+    let shadow = settings.shadow.as_deref().map(|path| load_shadow(path, &team, &prober)).transpose()?;
+    let loader = Loader::start(watched, prober, orders)?;
+    let thread = std::thread::spawn(move || loader.run(&happened));
+    let choice = settings.sample_seed.map_or(Choice::Mean, |seed| Choice::Sample { seed });
+    let mut server = Server {
+        port: PolicyPort::open(&team.place)?,
+        swap: HotSwap::new(team.robots, ordered, events),
+        shadow: shadow.map(|loaded| HotSwap::always(team.robots, loaded)),
+        team,
+        choice,
+        positions: Vec::new(),
+        horizons: Vec::new(),
+    };
+    let served = server.serve(&stop);
+    drop(server); // Hangs up: the loader writes down what is left and ends.
+    let _ = thread.join();
+    served
+}
+
+fn load_shadow(path: &Path, team: &TeamFile, prober: &Prober) -> anyhow::Result<Loaded> {
+    let candidate = look(&resolve(path)?, Some(team.robots), &prober.limits).context("the shadow cannot be used")?;
+    prober.try_out(&candidate).context("the shadow cannot be used")?;
+    let runtime = Runtime::start(&prober.back_end)?;
+    let (bytes, contract) = (&candidate.bytes, &candidate.contract);
+    let (actor, _) = try_out(&runtime, bytes, contract, candidate.reference.as_ref(), &prober.limits)?;
+    info!("shadow {} (sha256 {})", candidate.file.display(), &candidate.sha256[..12]);
+    Ok(Loaded { actor, version: Version(0), sha256: candidate.sha256, since_tick: None })
+}
+
+struct Server {
+    port: PolicyPort,
+    swap: HotSwap,
+    shadow: Option<HotSwap>,
+    team: TeamFile,
+    choice: Choice,
+    positions: Vec<Position>,
+    horizons: Vec<Horizon>,
+}
+
+impl Server {
+    fn serve(&mut self, stop: &StopFlag) -> anyhow::Result<()> {
+        self.swap.between_ticks(0);
+        self.port.answer(PolicyAnswer { epoch: self.team.epoch, kind: answer::HELLO, ..PolicyAnswer::EMPTY })?;
+        info!("serves {} robots", self.team.robots);
+        while !stop.is_set() {
+            self.port.wait(LOOK_AROUND)?;
+            match self.port.newest()? {
+                Some(observation) => self.answer(&observation)?,
+                // The coordinator takes this folder with it.
+                None if !Path::new(&self.team.place.root).exists() => return Ok(()),
+                None => {}
+            }
+        }
+        Ok(())
+    }
+
+    fn answer(&mut self, observation: &Observation) -> anyhow::Result<()> {
+        let read = os::now_ns();
+        let robots = self.team.robots;
+        if observation.epoch != self.team.epoch || observation.robots != robots as u64 {
+            return Ok(());
+        }
+        let tick = observation.tick;
+        self.positions.clear();
+        self.positions.extend(observation.positions[..robots].iter().map(|&position| Position::from(position)));
+        self.swap.between_ticks(tick);
+        let chosen = self.swap.choose(tick, &self.positions, self.choice, &mut self.horizons);
+        let kind = if chosen { answer::HORIZONS } else { answer::NONE };
+        self.publish(observation, read, kind, self.swap.current())?;
+        // Only now: a shadow delays nobody.
+        if let Some(shadow) = &mut self.shadow {
+            let read = os::now_ns();
+            if shadow.choose(tick, &self.positions, self.choice, &mut self.horizons) {
+                self.publish(observation, read, answer::SHADOW, self.shadow.as_ref().and_then(HotSwap::current))?;
+            }
+        }
+        Ok(())
+    }
+
+    fn publish(&self, asked: &Observation, read: u64, kind: u32, acting: Option<&Loaded>) -> anyhow::Result<()> {
+        let mut message = PolicyAnswer {
+            epoch: asked.epoch,
+            tick: asked.tick,
+            asked: asked.stamp,
+            read,
+            kind,
+            ..PolicyAnswer::EMPTY
+        };
+        if let Some(acting) = acting {
+            message.version = acting.version.0;
+            message.sha256 = digest_bytes(&acting.sha256);
+        }
+        if kind != answer::NONE {
+            for (to, horizon) in message.horizons.iter_mut().zip(&self.horizons) {
+                *to = horizon.steps() as u8;
+            }
+        }
+        message.stamp = os::now_ns();
+        Ok(self.port.answer(message)?)
+    }
+}
+
+/// The 32 bytes of 64 hexadecimal digits; zeros for anything else.
+fn digest_bytes(digits: &str) -> [u8; 32] {
+    let mut bytes = [0; 32];
+    for (byte, pair) in bytes.iter_mut().zip(digits.as_bytes().chunks_exact(2)) {
+        let digit = |c: u8| (c as char).to_digit(16).unwrap_or_default() as u8;
+        *byte = digit(pair[0]) << 4 | digit(pair[1]);
+    }
+    bytes
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn digits_become_bytes() {
+        let bytes = super::digest_bytes(&format!("00ff1a{}", "0".repeat(58)));
+        assert_eq!(bytes[..4], [0, 255, 0x1a, 0]);
+    }
+}
