@@ -1,0 +1,62 @@
+//! Runs with a policy, one file per promise. Apart from the others because only these need the policy
+//! server, the heaviest build of the project.
+
+mod killed;
+mod swap;
+
+use shared::policy::contract::Contract;
+use shared::policy::onnx::{ActorGraph, Dense};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::OnceLock;
+
+/// Where the policy server is; built at the first call, beside the coordinator, which looks for it there.
+fn policy_server() -> PathBuf {
+    static BUILT: OnceLock<()> = OnceLock::new();
+    BUILT.get_or_init(|| {
+        let status = Command::new(env!("CARGO"))
+            .args(["build", "--release", "--bins", "-p", "policy-server"])
+            .current_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join(".."))
+            .status()
+            .expect("cargo is there");
+        assert!(status.success(), "the policy server does not build");
+    });
+    tests::program("coordinator").with_file_name("policy-server")
+}
+
+/// An actor for `robots` that answers everything with the horizon `steps`.
+fn actor(robots: usize, steps: usize) -> (Vec<u8>, Contract) {
+    let mean = ((steps as f64 - 1.5) / 24.0 - 1.0).atanh() as f32;
+    let layer = |inputs: usize, outputs: usize, weight: f32, bias: f32| Dense {
+        inputs,
+        outputs,
+        weight: vec![weight; inputs * outputs],
+        bias: vec![bias; outputs],
+    };
+    let graph = ActorGraph {
+        hidden: vec![layer(2 * robots, 64, 0.01, 0.0)],
+        mean: layer(64, robots, 0.0, mean),
+        log_std: Some(layer(64, robots, 0.0, -1.0)),
+        log_std_bounds: (-20.0, 2.0),
+        metadata: BTreeMap::new(),
+    };
+    (graph.write(), Contract::standard(robots, true))
+}
+
+/// The ticks of `policy.csv` so far: source, version, sha256.
+fn acted(run: &Path) -> Vec<[String; 3]> {
+    let text = std::fs::read_to_string(run.join("policy.csv")).unwrap_or_default();
+    let whole = text.rfind('\n').map_or("", |end| &text[..end]);
+    let columns = |line: &str| {
+        let mut fields = line.split(',').skip(1).map(String::from);
+        std::array::from_fn(|_| fields.next().unwrap_or_default())
+    };
+    whole.lines().skip(1).map(columns).collect()
+}
+
+/// Repeats the run in one process from its recorded horizons; the same bytes or a panic.
+fn assert_same_bytes_in_process(run: &Path) {
+    let output = Command::new(tests::program("coordinator")).arg("replay").arg(run).output().expect("it starts");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stdout));
+}
