@@ -16,6 +16,7 @@ mod reference;
 mod try_out;
 
 pub use error::{CheckError, TryError};
+pub use probe::Prober;
 pub use look::{Candidate, look, look_at};
 pub use reference::{Case, ReferenceSet};
 pub use try_out::{Report, try_out};
