@@ -8,7 +8,7 @@ use shared::policy::onnx::{ActorGraph, Dense};
 use std::collections::BTreeMap;
 
 /// Tries models in processes of the real binary.
-pub fn prober() -> Prober {
+pub(crate) fn prober() -> Prober {
     Prober {
         program: env!("CARGO_BIN_EXE_policy-server").into(),
         back_end: BackEnd::Embedded,
@@ -17,12 +17,12 @@ pub fn prober() -> Prober {
 }
 
 /// A layer whose weights are `weight` and whose biases are `bias`.
-pub fn dense(inputs: usize, outputs: usize, weight: f32, bias: f32) -> Dense {
+pub(crate) fn dense(inputs: usize, outputs: usize, weight: f32, bias: f32) -> Dense {
     Dense { inputs, outputs, weight: vec![weight; inputs * outputs], bias: vec![bias; outputs] }
 }
 
 /// An actor for `robots` whose mean is always `mean`.
-pub fn constant_actor(robots: usize, mean: f32) -> ActorGraph {
+pub(crate) fn constant_actor(robots: usize, mean: f32) -> ActorGraph {
     ActorGraph {
         hidden: vec![dense(2 * robots, 8, 0.01, 0.1)],
         mean: dense(8, robots, 0.0, mean),
@@ -33,6 +33,6 @@ pub fn constant_actor(robots: usize, mean: f32) -> ActorGraph {
 }
 
 /// Its contract.
-pub fn contract(robots: usize) -> Contract {
+pub(crate) fn contract(robots: usize) -> Contract {
     Contract::standard(robots, true)
 }
