@@ -57,16 +57,17 @@ fn with_operator(operator: &str) -> Vec<u8> {
 /// Appends a field to the graph: of two fields 7 the reader takes the last, so the whole is rebuilt.
 fn appended_to_graph(model: &[u8], field: u64, message: Message) -> Vec<u8> {
     use shared::policy::onnx::wire::{Fields, Value};
-    Fields::new(model).fold(Message::new(), |rebuilt, next| match next.unwrap() {
-        (7, Value::Bytes(graph)) => {
-            let more = Message::new().message(field, message.clone()).finish();
-            rebuilt.bytes(7, [graph, &more].concat())
-        }
-        (number, Value::Bytes(bytes)) => rebuilt.bytes(number, bytes),
-        (number, Value::Varint(value)) => rebuilt.varint(number, value),
-        other => panic!("{other:?}"),
-    })
-    .finish()
+    Fields::new(model)
+        .fold(Message::new(), |rebuilt, next| match next.unwrap() {
+            (7, Value::Bytes(graph)) => {
+                let more = Message::new().message(field, message.clone()).finish();
+                rebuilt.bytes(7, [graph, &more].concat())
+            }
+            (number, Value::Bytes(bytes)) => rebuilt.bytes(number, bytes),
+            (number, Value::Varint(value)) => rebuilt.varint(number, value),
+            other => panic!("{other:?}"),
+        })
+        .finish()
 }
 
 fn with_opset(version: u64) -> Vec<u8> {
@@ -180,7 +181,12 @@ fn kinds() -> Vec<Kind> {
             CheckError::Operator { .. },
             ["RandomNormal"]
         ),
-        kind!("infinite weight", tried(infinite), CheckError::Weights { index: 3, .. }, ["hidden0.weight", "element 3"]),
+        kind!(
+            "infinite weight",
+            tried(infinite),
+            CheckError::Weights { index: 3, .. },
+            ["hidden0.weight", "element 3"]
+        ),
         kind!(
             "tensor that does not fill its shape",
             bad(|bytes, _| {

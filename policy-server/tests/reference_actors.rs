@@ -70,5 +70,7 @@ fn onnx_runtime() -> Option<PathBuf> {
     let output = Command::new("python3").args(["-c", script]).output().ok().filter(|output| output.status.success())?;
     let folder = String::from_utf8(output.stdout).ok()?;
     let files = std::fs::read_dir(folder.trim()).ok()?.filter_map(|entry| Some(entry.ok()?.path()));
-    files.filter(|file| file.file_name().is_some_and(|name| name.to_string_lossy().starts_with("libonnxruntime.so"))).max()
+    files
+        .filter(|file| file.file_name().is_some_and(|name| name.to_string_lossy().starts_with("libonnxruntime.so")))
+        .max()
 }

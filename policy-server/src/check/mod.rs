@@ -16,8 +16,8 @@ mod reference;
 mod try_out;
 
 pub use error::{CheckError, TryError};
-pub use probe::Prober;
 pub use look::{Candidate, look, look_at};
+pub use probe::Prober;
 pub use reference::{Case, ReferenceSet};
 pub use try_out::{Report, try_out};
 

@@ -37,7 +37,8 @@ fn swaps_every_five_ticks_are_recorded_and_delay_nobody() {
     let bias = not_finite.len() - 300; // within the last stored tensors
     not_finite[bias..bias + 16].fill(0xff);
     let wrong_team = actor(3, 20);
-    let versions = [&long, &(long.0[..500].to_vec(), long.1.clone()), &short, &(not_finite, long.1.clone()), &wrong_team];
+    let versions =
+        [&long, &(long.0[..500].to_vec(), long.1.clone()), &short, &(not_finite, long.1.clone()), &wrong_team];
     for (number, (model, contract)) in versions.iter().cycle().enumerate() {
         let begun = (number + 1) * EVERY;
         if begun >= TICKS || !reached(&run, begun) {
