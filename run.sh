@@ -33,9 +33,10 @@ policy) build policy-server; shift; exec "$target/release/policy-server" "$@" ;;
 run)
     case " $* " in
     # Only runs with a policy need its server: the embedded back-end is the heaviest build of all.
-    *" --policy "* | *" --policy="*) build coordinator agent policy-server ;;
-    *) build coordinator agent ;;
-    esac ;;
+    # By itself, so that its dependencies have the same features (and are built once) in every command.
+    *" --policy "* | *" --policy="*) build policy-server ;;
+    esac
+    build coordinator agent ;;
 *) build coordinator ;;
 esac
 exec "$target/release/coordinator" "$@"

@@ -10,19 +10,37 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::OnceLock;
+use std::time::SystemTime;
 
-/// Where the policy server is; built at the first call, beside the coordinator, which looks for it there.
+/// Where the policy server is: beside the coordinator, which looks for it there. Built at the first call
+/// when it is missing or older than its sources; `cargo test --workspace` has built it, and building it
+/// again with the features of other packages would take minutes.
 fn policy_server() -> PathBuf {
     static BUILT: OnceLock<()> = OnceLock::new();
+    let program = tests::program("coordinator").with_file_name("policy-server");
     BUILT.get_or_init(|| {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+        let sources = newest(&root.join("policy-server/src")).max(newest(&root.join("shared/src")));
+        if std::fs::metadata(&program).and_then(|meta| meta.modified()).is_ok_and(|built| built > sources) {
+            return;
+        }
         let status = Command::new(env!("CARGO"))
             .args(["build", "--release", "--bins", "-p", "policy-server"])
-            .current_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join(".."))
+            .current_dir(root)
             .status()
             .expect("cargo is there");
         assert!(status.success(), "the policy server does not build");
     });
-    tests::program("coordinator").with_file_name("policy-server")
+    program
+}
+
+/// When the newest file in `folder` was changed.
+fn newest(folder: &Path) -> SystemTime {
+    let entries = std::fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("it can be read").path());
+    let changed = |path: PathBuf| {
+        if path.is_dir() { newest(&path) } else { path.metadata().and_then(|meta| meta.modified()).expect("a file") }
+    };
+    entries.map(changed).max().unwrap_or(SystemTime::UNIX_EPOCH)
 }
 
 /// An actor for `robots` that answers everything with the horizon `steps`.
