@@ -304,8 +304,13 @@ impl Team {
     }
 
     /// Waits until every robot is there, and until all are connected.
-    fn gather(&mut self, stop: &StopFlag) -> Result<Wait, ServiceError> {
+    fn gather(&mut self, stop: &StopFlag) -> Result<Wait, RunError> {
         let end = Instant::now() + self.options.start_patience;
+        if let Some(policy) = &mut self.policy
+            && !policy.gather(end, stop)?
+        {
+            return Ok(Wait::Stopped);
+        }
         let stall = if matches!(self.options.agents, Agents::ByHand) { self.options.start_patience } else { STALL };
         for wanted in [kind::READY, kind::MET] {
             self.roster.expect_all();

@@ -8,7 +8,7 @@ pub mod range;
 pub mod replay;
 pub mod report;
 pub mod run;
-mod run_policy;
+pub mod run_policy;
 pub mod scenario;
 pub mod sweep;
 pub mod verify;
