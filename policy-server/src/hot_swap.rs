@@ -26,7 +26,12 @@ pub enum Order {
     /// Let this model act from the next tick on.
     Switch(Box<Loaded>),
     /// Let the previous model act again, under this version: its bytes are the same.
-    Rollback(Version),
+    Rollback {
+        /// The version that was asked for.
+        version: Version,
+        /// SHA-256 of the model that is meant.
+        sha256: String,
+    },
 }
 
 /// What happened, for the loader to write down. Models come back with it, so that the serving thread
@@ -43,6 +48,8 @@ pub enum Event {
         /// What nobody needs any more.
         retired: Option<Box<Loaded>>,
     },
+    /// A rollback was ordered to a model that is not there any more.
+    Gone,
     /// The current model answered with numbers that are not finite, or not at all.
     Failed {
         /// At which tick.
@@ -105,8 +112,15 @@ impl HotSwap {
                     let old = self.current.replace(new);
                     mem::replace(&mut self.previous, old)
                 }
-                Order::Rollback(version) => {
-                    mem::swap(&mut self.current, &mut self.previous);
+                Order::Rollback { version, sha256 } => {
+                    let is = |model: &Option<Box<Loaded>>| model.as_ref().is_some_and(|model| model.sha256 == sha256);
+                    // A model that failed meanwhile may have put the wanted one in its place already.
+                    if is(&self.previous) {
+                        mem::swap(&mut self.current, &mut self.previous);
+                    } else if !is(&self.current) {
+                        self.tell(Event::Gone);
+                        continue;
+                    }
                     if let Some(current) = &mut self.current {
                         current.version = version;
                     }

@@ -4,7 +4,7 @@
 use crate::actor::{BackEndError, Runtime};
 use crate::check::{Candidate, CheckError, Prober, TryError, look, try_out};
 use crate::hot_swap::{Event, Loaded, Order};
-use shared::policy::folder::{FolderError, PolicyFolder, Rejected, Status, Version};
+use shared::policy::folder::{FolderError, PolicyFolder, Rejected, Serving, Status, Version};
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender};
@@ -57,6 +57,8 @@ pub struct Loader {
     refused: BTreeSet<String>,
     seen: Seen,
     seen_upstream: Seen,
+    /// Orders that the serving thread has not carried out yet.
+    outstanding: usize,
 }
 
 impl Loader {
@@ -67,8 +69,17 @@ impl Loader {
         let status = Status { pid: std::process::id(), ..Status::default() };
         let seen_upstream =
             watched.upstream.as_deref().and_then(|path| see(&shared::policy::folder::resolve(path).ok()?));
-        let mut loader =
-            Self { watched, prober, runtime, orders, status, refused: BTreeSet::new(), seen: None, seen_upstream };
+        let mut loader = Self {
+            watched,
+            prober,
+            runtime,
+            orders,
+            status,
+            refused: BTreeSet::new(),
+            seen: None,
+            seen_upstream,
+            outstanding: 0,
+        };
         let folder = &loader.watched.folder;
         let current = folder.current()?.ok_or_else(|| FolderError::NoPolicy(folder.root().display().to_string()))?;
         let mut others = folder.versions()?;
@@ -147,15 +158,14 @@ impl Loader {
             info!("policy {version} has the bytes of a model that was refused before; it is not tried again");
             return false;
         }
-        let is = |serving: &Option<shared::policy::folder::Serving>| {
-            serving.as_ref().is_some_and(|serving| serving.sha256 == digest)
-        };
-        let order = if is(&self.status.serving)
-            && self.status.serving.as_ref().is_some_and(|s| s.version == version.to_string())
-        {
+        let serves = |serving: &Option<Serving>| serving.as_ref().is_some_and(|serving| serving.sha256 == digest);
+        let acting = serves(&self.status.serving)
+            && self.status.serving.as_ref().is_some_and(|serving| serving.version == version.to_string());
+        // What STATUS says holds only when no order is on its way.
+        let order = if acting && self.outstanding == 0 {
             return true;
-        } else if is(&self.status.previous) {
-            Order::Rollback(version)
+        } else if serves(&self.status.previous) && self.outstanding == 0 {
+            Order::Rollback { version, sha256: digest }
         } else {
             match self.load(&candidate, version) {
                 Ok(loaded) => Order::Switch(Box::new(loaded)),
@@ -166,6 +176,7 @@ impl Loader {
                 }
             }
         };
+        self.outstanding += 1;
         // The serving thread is gone only when the process ends.
         self.orders.send(order).is_ok()
     }
@@ -189,9 +200,15 @@ impl Loader {
         match event {
             Event::Switched { tick, serving, previous, retired } => {
                 drop(retired);
+                self.outstanding = self.outstanding.saturating_sub(1);
                 info!("policy {} (sha256 {}) acts from tick {tick} on", serving.version, &serving.sha256[..12]);
                 self.status.serving = Some(serving);
                 self.status.previous = previous;
+            }
+            Event::Gone => {
+                // Looked at anew, it is loaded from its file.
+                self.outstanding = self.outstanding.saturating_sub(1);
+                self.seen = None;
             }
             Event::Failed { tick, failed, serving, reason } => {
                 error!("policy {} failed at tick {tick}: {reason}; the previous one acts again", failed.version);
@@ -210,7 +227,7 @@ impl Loader {
     }
 
     /// CURRENT names what acts, so that a restarted server starts with it.
-    fn go_back_to(&mut self, serving: &Option<shared::policy::folder::Serving>) {
+    fn go_back_to(&mut self, serving: &Option<Serving>) {
         let Some(version) = serving.as_ref().and_then(|serving| serving.version.parse().ok()) else { return };
         match self.watched.folder.set_current(version) {
             Ok(()) => self.seen = see(&self.watched.folder.model(version)),

@@ -181,9 +181,16 @@ fn numbers_that_are_not_finite_bring_the_previous_model_back_within_the_tick() {
     assert_eq!(at(0.0, 2, &mut swap), Some(10));
     let failed = happened.try_iter().find_map(|event| match event {
         Event::Failed { tick, failed, serving, .. } => Some((tick, failed.version, serving.unwrap().version)),
-        Event::Switched { .. } => None,
+        Event::Switched { .. } | Event::Gone => None,
     });
     assert_eq!(failed, Some((1, "v000002".into(), "v000001".into())));
+    // A rollback to the model that has just failed leaves the good one acting; one to a stranger, too.
+    for digest in [sha256(b"failed"), sha256(&actor(10).write())] {
+        orders.send(Order::Rollback { version: Version(7), sha256: digest }).unwrap();
+        swap.between_ticks(3);
+        assert_eq!(at(0.0, 3, &mut swap), Some(10));
+    }
+    assert!(happened.try_iter().any(|event| matches!(event, Event::Gone)));
     // And when nothing is left, that is said instead of a horizon.
     let mut alone = HotSwap::new(ROBOTS, mpsc::channel().1, mpsc::channel().0);
     assert_eq!(at(0.0, 3, &mut alone), None);
