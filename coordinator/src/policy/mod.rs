@@ -81,6 +81,8 @@ pub struct PolicySource {
     epoch: u64,
     /// Whether waiting makes sense. A server that let a tick down is not waited for until it speaks again.
     present: bool,
+    /// Whether a server started by hand has taken the place of ours.
+    successor: bool,
     bridge: Bridge,
     record: PolicyRecord,
     tally: Tally,
@@ -104,6 +106,7 @@ impl PolicySource {
             robots,
             epoch,
             present: false,
+            successor: false,
             bridge: Bridge::new(robots, options.hold, options.default),
             record: PolicyRecord::create(run, robots, options.settings.shadow.is_some())?,
             tally: Tally::new(options.settings.policy.clone(), options.settings.shadow.clone()),
@@ -184,11 +187,13 @@ impl PolicySource {
                         return Ok(Some(answer).filter(|answer| answer.kind == answer::HORIZONS));
                     }
                     answer::HORIZONS => self.tally.too_late(),
+                    answer::HELLO => self.successor = self.process.has_ended(),
                     _ => {}
                 }
             }
             let left = deadline.saturating_duration_since(Instant::now());
-            if !self.present || left.is_zero() || stop.is_set() || self.process.has_ended() {
+            let dead = !self.successor && self.process.has_ended();
+            if !self.present || left.is_zero() || stop.is_set() || dead {
                 if self.present && !stop.is_set() {
                     tracing::warn!("the policy server gave no answer for tick {tick}; robots keep their horizons");
                     self.present = false;
