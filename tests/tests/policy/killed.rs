@@ -15,7 +15,7 @@ fn a_killed_server_is_bridged_and_its_successor_joins_in() {
     source.publish(&model, &contract, None).unwrap();
     let server = policy_server();
     let arguments = format!(
-        "14 --policy {} --policy-hold 3 --policy-default 25 --real-time --set model.sample_time=0.05 --max-ticks 200",
+        "14 --policy {} --policy-hold 3 --policy-default 25 --real-time --set model.sample_time=0.05 --set horizon.jitter=0 --max-ticks 200",
         source.root().display()
     );
     let mut run = Run::start(Robots::Real, &arguments);

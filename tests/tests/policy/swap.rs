@@ -15,7 +15,7 @@ const EVERY: usize = 5;
 fn start(policy: &PolicyFolder) -> Run {
     policy_server();
     let arguments = format!(
-        "{ROBOTS} --policy {} --policy-poll 1 --policy-wait 1000 --real-time --set model.sample_time=0.05 --max-ticks {TICKS}",
+        "{ROBOTS} --policy {} --policy-poll 1 --policy-wait 1000 --real-time --set model.sample_time=0.05 --set horizon.jitter=0 --max-ticks {TICKS}",
         policy.root().display()
     );
     Run::start(Robots::Real, &arguments)
