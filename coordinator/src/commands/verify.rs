@@ -25,9 +25,14 @@ pub fn run(args: Args) -> Ending {
         println!("{}: {} checks failed", args.run.display(), report.findings.len());
         return Ok(Outcome::Failed);
     }
+    let summary = match (report.cut, report.ticks) {
+        (false, _) => "the summary is right".into(),
+        (true, 0) => "the record was cut before the end of tick 0 and has no summary".into(),
+        (true, ticks) => format!("the record was cut after tick {} and has no summary", ticks - 1),
+    };
     println!(
         "{}: {} ticks of {} robots follow the model within their input bounds; minimum separation {:.6} m; {} arrived; \
-         the summary is right",
+         {summary}",
         args.run.display(),
         report.ticks,
         report.robots,

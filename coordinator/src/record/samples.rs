@@ -49,11 +49,16 @@ pub(crate) fn steps(robots: usize, tick: u64) -> Vec<Step> {
 
 /// A real run of a team in this process, recorded in `folder`, with horizons from `random:3`.
 pub(crate) fn record_run(folder: &std::path::Path, scenario: &str, params: &shared::params::Params) {
+    record_ticks(folder, scenario, params, 120);
+}
+
+/// The same for at most `max_ticks` ticks.
+pub(crate) fn record_ticks(folder: &std::path::Path, scenario: &str, params: &shared::params::Params, max_ticks: u64) {
     use crate::record::about::{Machine, Versions};
     use crate::record::{About, RunFolder};
     use std::time::Duration;
     let mut scenario = Scenario::resolve(Some(scenario), None).unwrap();
-    scenario.max_ticks = 120;
+    scenario.max_ticks = max_ticks;
     let about = About {
         version: 1,
         scenario: scenario.name.clone(),
