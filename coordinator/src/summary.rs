@@ -41,6 +41,9 @@ pub struct Summary {
     pub end: End,
     /// Which guarantee held, and why not where it did not.
     pub guarantee: String,
+    /// Whether somebody came nearer than was guaranteed; then the run was no success.
+    #[serde(default)]
+    pub guarantee_broken: bool,
     /// The figures that depend on the trajectory alone.
     #[serde(flatten)]
     pub run: RunSummary,
@@ -57,16 +60,19 @@ impl Summary {
         params: &Params,
         (profile, horizon): (&str, &str),
         end: End,
-        run: RunSummary,
+        mut run: RunSummary,
         timings: &Timings,
     ) -> Self {
+        let guarantee = guarantee::judge(scenario, params, &run);
+        run.success &= !guarantee.broken;
         Self {
             version: VERSION,
             scenario: scenario.name.clone(),
             profile: profile.into(),
             horizon: horizon.into(),
             end,
-            guarantee: guarantee::statement(scenario, params, &run),
+            guarantee: guarantee.statement,
+            guarantee_broken: guarantee.broken,
             run,
             tick_latency: timings.tick.percentiles(),
             solve_latency: timings.solve.iter().map(Latency::percentiles).collect(),

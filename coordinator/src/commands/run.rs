@@ -199,6 +199,7 @@ fn play(
     }
     match ended.outcome {
         Outcome::PeerLost(lost) => Err(Failure::peer_lost(lost)),
+        _ if summary.guarantee_broken => Ok(exit::Outcome::Failed),
         Outcome::Stopped => Ok(exit::Outcome::Done),
         _ if summary.run.success => Ok(exit::Outcome::Done),
         _ => Ok(exit::Outcome::Failed),
