@@ -48,12 +48,17 @@ pub fn judge(scenario: &Scenario, params: &Params, summary: &RunSummary) -> Guar
              and none that has reached it falls below it again"
         ));
     }
-    let when = if noise > 0.0 { "at the samples only (positions are measured with noise)" } else { "between samples too" };
+    let when =
+        if noise > 0.0 { "at the samples only (positions are measured with noise)" } else { "between samples too" };
     let held = format!(
         "separation of at least {kept} m, {when}, by hard cell rows and the last check ({} inputs changed)",
         summary.shielded
     );
-    none(if kept < limit { format!("{held}; not the full {limit} m, because cell.separation is {kept} m") } else { held })
+    none(if kept < limit {
+        format!("{held}; not the full {limit} m, because cell.separation is {kept} m")
+    } else {
+        held
+    })
 }
 
 /// The least separation between samples that the promise allows, m. Under noise the promise is about the

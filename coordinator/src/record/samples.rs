@@ -52,13 +52,13 @@ pub(crate) fn record_run(folder: &std::path::Path, scenario: &str, params: &shar
     record_ticks(folder, scenario, params, 120);
 }
 
-/// The same for at most `max_ticks` ticks.
+/// The same, stopped after `max_ticks` ticks, which may be none.
 pub(crate) fn record_ticks(folder: &std::path::Path, scenario: &str, params: &shared::params::Params, max_ticks: u64) {
     use crate::record::about::{Machine, Versions};
     use crate::record::{About, RunFolder};
     use std::time::Duration;
     let mut scenario = Scenario::resolve(Some(scenario), None).unwrap();
-    scenario.max_ticks = max_ticks;
+    scenario.max_ticks = 120;
     let about = About {
         version: 1,
         scenario: scenario.name.clone(),
@@ -75,7 +75,8 @@ pub(crate) fn record_ticks(folder: &std::path::Path, scenario: &str, params: &sh
     let folder = RunFolder::at(folder).unwrap();
     let mut session = crate::session::Session::start(folder, &scenario, params, about).unwrap();
     let horizon = |robot, tick| Horizon::random(3, robot, tick);
-    crate::in_process::run_team(&scenario, params, horizon, |tick, steps| {
+    let driven = Scenario { max_ticks, ..scenario.clone() };
+    crate::in_process::run_team(&driven, params, horizon, |tick, steps| {
         session.tick(tick, steps, Duration::from_micros(5)).map(|_| ())
     })
     .unwrap();
