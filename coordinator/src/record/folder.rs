@@ -38,6 +38,12 @@ pub enum RecordError {
         /// What the system said.
         source: io::Error,
     },
+    /// The file is there already.
+    #[error("{} exists already; results are never written over: give another file with --out FILE", path.display())]
+    Exists {
+        /// The file.
+        path: PathBuf,
+    },
     /// A value has no form in the file's format.
     #[error("cannot express {what} in {}: {reason}; please report this as a fault of vodca", path.display())]
     Encode {
@@ -151,10 +157,10 @@ impl RunFolder {
     }
 }
 
-/// `out`, or a new `runs/<UTC time>-<name>.<ending>` whose folder exists.
+/// `out`, which must not exist yet, or a new `runs/<UTC time>-<name>.<ending>` whose folder exists.
 pub fn new_file(out: Option<&Path>, name: &str, ending: &str) -> Result<PathBuf, RecordError> {
-    if let Some(out) = out {
-        return Ok(out.to_owned());
+    if let Some(path) = out.map(Path::to_owned) {
+        return if path.symlink_metadata().is_ok() { Err(RecordError::Exists { path }) } else { Ok(path) };
     }
     let runs = Path::new("runs");
     fs::create_dir_all(runs).map_err(|source| RecordError::Folder { path: runs.to_owned(), source })?;
@@ -173,7 +179,10 @@ pub fn replace(path: &Path, content: &[u8]) -> Result<(), RecordError> {
 /// Writes a file that must not exist yet.
 pub fn write_new(path: &Path, content: &[u8]) -> Result<(), RecordError> {
     let written = File::create_new(path).and_then(|mut file| file.write_all(content));
-    written.map_err(|source| RecordError::Write { path: path.to_owned(), source })
+    written.map_err(|source| match source.kind() {
+        io::ErrorKind::AlreadyExists => RecordError::Exists { path: path.to_owned() },
+        _ => RecordError::Write { path: path.to_owned(), source },
+    })
 }
 
 /// A file that grows record by record. When a write fails midway the file is cut back to its last whole
