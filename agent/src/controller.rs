@@ -1,4 +1,5 @@
-//! What every controller is: one robot, one tick, pure (no clock, no I/O, nothing allocated).
+//! What every controller is: one robot, one tick, pure (no I/O, nothing allocated). Time is measured
+//! and reported, but nothing is ever decided by it.
 
 use shared::horizon::Horizon;
 use shared::prediction::Prediction;
@@ -53,6 +54,8 @@ pub struct Decision {
     pub status: Status,
     /// Whether the last check changed the input.
     pub shielded: bool,
+    /// Time in the QP's solvers, ns; 0 for a controller without a QP.
+    pub solve_ns: u64,
 }
 
 /// One robot's controller.

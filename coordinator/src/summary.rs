@@ -49,7 +49,7 @@ pub struct Summary {
     pub run: RunSummary,
     /// Duration of a tick as the coordinator sees it.
     pub tick_latency: Percentiles,
-    /// From having all messages to having a plan, by robot.
+    /// Time in the QP's solvers, by robot.
     pub solve_latency: Vec<Percentiles>,
 }
 

@@ -72,7 +72,7 @@ fn fourteen_robots() -> Result<Vec<Figure>, Failed> {
         ("fourteen_path.svg", bars("Fourteen robots: path cost", "path cost (m)", |film| film.summary.path_cost)),
         (
             "fourteen_computation.svg",
-            bars("Fourteen robots: planning time, mean of a robot and tick", "time (us)", Film::mean_solve_us),
+            bars("Fourteen robots: planning time, mean of a robot and tick", "time (us)", Film::mean_step_us),
         ),
         ("fourteen_completion.svg", bars("Fourteen robots: task completion", "time (s)", completion)),
     ])

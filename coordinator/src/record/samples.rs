@@ -41,7 +41,8 @@ pub(crate) fn steps(robots: usize, tick: u64) -> Vec<Step> {
             status: Status::Solved,
             shielded: false,
             plan: Prediction::roll_out(position, start + Position::new(5.0, 0.5), 0.2, &[input; 3]),
-            solve_ns: 1_000,
+            solve_ns: 400,
+            step_ns: 1_000,
         }
     };
     (0..robots).map(step).collect()

@@ -55,6 +55,7 @@ impl Drive for Straight {
             shielded: false,
             plan: Prediction::from_states(&[position, self.position], self.set_point),
             solve_ns: 0,
+            step_ns: 0,
         }
     }
 }
