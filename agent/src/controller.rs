@@ -42,7 +42,7 @@ pub struct View<'a> {
 /// What a robot decides in a tick.
 #[derive(Clone, Debug)]
 pub struct Decision {
-    /// u_i[0], m/s, within bounds.
+    /// `u_i[0]`, m/s, within bounds.
     pub input: Input,
     /// The plan to publish; `plan.state(0)` is the measured position.
     pub plan: Prediction,
