@@ -1,6 +1,6 @@
 //! The figures of the paper's results section and of the README, run and drawn anew.
 //!
-//! Where the paper shows its learned policy, these show the best of [`SEEDS`] runs with random horizons
+//! Where the paper shows its learned policy, these show the best of twenty runs with random horizons
 //! (VH): the same controller with variable horizons and no training.
 
 mod film;
