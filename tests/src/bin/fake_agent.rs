@@ -20,7 +20,7 @@ struct Args {
     robot: usize,
     #[arg(long)]
     parent: Option<u32>,
-    /// ROBOT:KIND[:TICK]; kinds: panic, exit, abort, hang, spin
+    /// `ROBOT:KIND[:TICK]`; kinds: panic, exit, abort, hang, spin
     #[arg(long)]
     fault: Option<String>,
 }
