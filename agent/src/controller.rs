@@ -1,4 +1,5 @@
-//! What every controller is: one robot, one tick, pure (no clock, no I/O, nothing allocated).
+//! What every controller is: one robot, one tick, pure (no I/O, nothing allocated). Time is measured
+//! and reported, but nothing is ever decided by it.
 
 use shared::horizon::Horizon;
 use shared::prediction::Prediction;
@@ -41,7 +42,7 @@ pub struct View<'a> {
 /// What a robot decides in a tick.
 #[derive(Clone, Debug)]
 pub struct Decision {
-    /// u_i[0], m/s, within bounds.
+    /// `u_i[0]`, m/s, within bounds.
     pub input: Input,
     /// The plan to publish; `plan.state(0)` is the measured position.
     pub plan: Prediction,
@@ -53,6 +54,8 @@ pub struct Decision {
     pub status: Status,
     /// Whether the last check changed the input.
     pub shielded: bool,
+    /// Time in the QP's solvers, ns; 0 for a controller without a QP.
+    pub solve_ns: u64,
 }
 
 /// One robot's controller.

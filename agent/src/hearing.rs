@@ -40,14 +40,15 @@ impl Hearing {
     /// Takes the plan that robot `sender` computed at `tick`.
     pub fn hear(&mut self, tick: u64, sender: usize, plan: &Prediction) {
         let Disturbance { plan_delay, plan_loss, position_loss, .. } = self.disturbance;
-        if sender != self.listener && self.is_lost(position_loss, tick, sender, 0) {
-            return;
+        let lost = sender != self.listener && self.is_lost(position_loss, tick, sender, 0);
+        if !lost {
+            let neighbour = &mut self.neighbours[sender];
+            neighbour.present = Some((tick + 1, plan.state(1)));
+            neighbour.set_point = plan.set_point;
         }
-        let neighbour = &mut self.neighbours[sender];
-        neighbour.present = Some((tick + 1, plan.state(1)));
-        neighbour.set_point = plan.set_point;
-        let lost = self.is_lost(plan_loss, tick, sender, 1);
-        let news = (!lost).then(|| (tick, plan.clone()));
+        // What is under way moves on even when this message is lost: otherwise a plan would stay in its
+        // slot and arrive after newer ones.
+        let news = (!lost && !self.is_lost(plan_loss, tick, sender, 1)).then(|| (tick, plan.clone()));
         let arrived = if plan_delay == 0 {
             news
         } else {
@@ -107,6 +108,27 @@ mod tests {
             assert_eq!(hearing.neighbours()[1].present, Some((tick + 1, Position::new(tick as f64 + 1.0, 0.0))));
             let heard = hearing.neighbours()[1].plan.as_ref().map(|(at, _)| *at);
             assert_eq!(heard, tick.checked_sub(2));
+        }
+    }
+
+    #[test]
+    fn lost_messages_neither_hold_late_plans_up_nor_bring_old_ones_back() {
+        for (plan_delay, plan_loss) in [(1, 0.0), (3, 0.0), (3, 0.4)] {
+            let mut hearing = hearing(Disturbance { plan_delay, plan_loss, position_loss: 0.4, ..CALM });
+            let arrives =
+                |hearing: &Hearing, tick| !hearing.is_lost(0.4, tick, 1, 0) && !hearing.is_lost(plan_loss, tick, 1, 1);
+            let (mut due, mut lost) = (None, 0);
+            for tick in 0..500 {
+                hearing.hear(tick, 1, &plan(tick as f64));
+                let sent = tick.checked_sub(plan_delay as u64);
+                let news = sent.filter(|&sent| arrives(&hearing, sent));
+                lost += u32::from(sent.is_some() && news.is_none());
+                due = news.or(due);
+                let (at, heard) = hearing.neighbours()[1].plan.clone().unzip();
+                assert_eq!(at, due, "delay {plan_delay}, tick {tick}");
+                assert_eq!(heard.map(|plan| plan.state(0).x), due.map(|due| due as f64));
+            }
+            assert!(lost > 100, "{lost} of 500 were lost");
         }
     }
 

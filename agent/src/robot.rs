@@ -51,7 +51,7 @@ impl Robot {
         let seen = measured(self.position, self.noise, self.seed, self.robot, tick);
         let view = View { tick, horizon, position: seen, neighbours: hearing.neighbours() };
         let decision = self.controller.tick(&view);
-        let solve_ns = started.elapsed().as_nanos() as u64;
+        let step_ns = started.elapsed().as_nanos() as u64;
         let position = self.position;
         self.position = position + decision.input * self.sample_time;
         Step {
@@ -64,7 +64,26 @@ impl Robot {
             status: decision.status,
             shielded: decision.shielded,
             plan: decision.plan,
-            solve_ns,
+            solve_ns: decision.solve_ns,
+            step_ns,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use shared::params::Profile;
+    use shared::scenario::set_up;
+
+    #[test]
+    fn the_time_of_the_qp_is_a_part_of_the_time_of_the_step() {
+        for (profile, has_qp) in [(Profile::Safe, true), (Profile::Orca, false)] {
+            let (scenario, params) = set_up(Some("two_setpoint"), None, profile, &[]).unwrap();
+            let hearing = Hearing::new(0, &scenario, &params.disturbance, 0);
+            let step = Robot::new(0, &scenario, &params, 0).step(0, Horizon::MAX, &hearing);
+            assert_eq!(step.solve_ns > 0, has_qp, "{profile}");
+            assert!(step.solve_ns < step.step_ns, "{profile}: {} of {} ns", step.solve_ns, step.step_ns);
         }
     }
 }

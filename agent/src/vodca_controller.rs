@@ -6,7 +6,7 @@ use crate::mpc::ladder::Ladder;
 use crate::mpc::problem::{Plan, Problem, Row, SlackPrice, SolveError, Target};
 use crate::reference;
 use crate::safety::cell::{Cell, Present};
-use crate::safety::last_check::{TOLERANCE, is_safe, nearest_safe};
+use crate::safety::last_check::{TOLERANCE, is_answer, nearest_safe};
 use crate::vodca::memory::ConflictMemory;
 use crate::vodca::rows::collision_rows;
 use crate::vodca::{Course, Hazard};
@@ -15,6 +15,7 @@ use shared::params::{Infeasible, Params, Reference};
 use shared::prediction::Prediction;
 use shared::step::{Level, Status};
 use shared::{Input, Position};
+use std::time::Instant;
 
 /// The controller of one robot.
 pub struct VodcaController {
@@ -169,7 +170,7 @@ impl VodcaController {
                 inputs[0] = (step / model.sample_time).map(|axis| bounded(axis, model.max_speed));
                 shielded = true;
             }
-            debug_assert!(is_safe(inputs[0] * model.sample_time, &self.cell, 2.0 * TOLERANCE));
+            debug_assert!(is_answer(inputs[0] * model.sample_time, &self.cell, 2.0 * TOLERANCE));
         }
         let set_point = self.layout.set_points[self.robot];
         (Prediction::roll_out(view.position, set_point, model.sample_time, inputs), shielded)
@@ -187,11 +188,13 @@ impl Controller for VodcaController {
         self.memory.remember(&self.params.aim, &self.params.vodca, rows);
         self.aim(view);
         self.bound_cell(view);
+        let solving = Instant::now();
         let (level, status) = self.solve(view, rows);
+        let solve_ns = solving.elapsed().as_nanos() as u64;
         let (prediction, shielded) = self.publish(view);
         let input: Input = self.plan.inputs[0];
         self.previous = Some(Previous { prediction: prediction.clone(), plan: self.plan.clone() });
-        Decision { input, plan: prediction, rows: rows as u32, level, status, shielded }
+        Decision { input, plan: prediction, rows: rows as u32, level, status, shielded, solve_ns }
     }
 }
 

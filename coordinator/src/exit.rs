@@ -1,6 +1,8 @@
 //! How a command ends, and the exit code that says so.
 
+use crate::stdout::PrintError;
 use std::error::Error;
+use std::io::Write as _;
 use std::process::ExitCode;
 
 /// How a command ended when nothing went wrong with the command itself.
@@ -43,6 +45,12 @@ impl Failure {
     }
 }
 
+impl From<PrintError> for Failure {
+    fn from(error: PrintError) -> Self {
+        Self::broken(error)
+    }
+}
+
 /// Prints what went wrong, once and with its causes, and gives the exit code.
 pub fn report(ending: Ending) -> ExitCode {
     let (code, error) = match ending {
@@ -52,7 +60,7 @@ pub fn report(ending: Ending) -> ExitCode {
         Err(Failure::Usage(error)) => (2, error),
         Err(Failure::PeerLost(error)) => (3, error),
     };
-    eprintln!("error: {}", chain(error.as_ref()));
+    let _ = writeln!(std::io::stderr(), "error: {}", chain(error.as_ref())); // nobody reads it: the code says it
     ExitCode::from(code)
 }
 

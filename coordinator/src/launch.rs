@@ -55,10 +55,18 @@ pub fn agent_program() -> Result<Program, LaunchError> {
     if path.is_file() { Ok(Program { path, arguments: Vec::new() }) } else { Err(LaunchError::NoProgram { path }) }
 }
 
-/// The command that starts robot `robot` of the run in `run` by hand.
+/// The command that starts robot `robot` of the run in `run` by hand: for a shell in any folder.
 pub fn command_line(run: &Path, robot: usize) -> String {
     let program = agent_program().map_or(AGENT.into(), |program| program.path);
-    format!("{} --run {} --robot {robot}", program.display(), run.display())
+    let run = fs::canonicalize(run).unwrap_or_else(|_| run.to_owned());
+    format!("{} --run {} --robot {robot}", quoted(&program), quoted(&run))
+}
+
+/// `path` as one word of a shell.
+fn quoted(path: &Path) -> String {
+    let text = path.to_string_lossy();
+    let plain = |c: char| c.is_alphanumeric() || "/._-+:@%,=".contains(c);
+    if !text.is_empty() && text.chars().all(plain) { text.into() } else { format!("'{}'", text.replace('\'', r"'\''")) }
 }
 
 /// Where robot `robot` writes what it has to say.
@@ -137,6 +145,20 @@ mod tests {
         let text = "warn: late\n\nthread 'main' (12) panicked at src/a.rs:3:5:\nindex out of bounds\n\
                     stack backtrace:\n   0: core::panicking\nnote: run with more\n";
         assert_eq!(last_line_of(text).as_deref(), Some("panicked at src/a.rs:3:5: index out of bounds"));
+    }
+
+    #[test]
+    fn commands_work_in_a_shell_in_any_folder() {
+        let place = std::env::temp_dir().join(format!("vodca's $HOME {}", std::process::id()));
+        fs::create_dir_all(&place).unwrap();
+        let here = std::env::current_dir().unwrap();
+        let up: PathBuf = here.components().skip(1).map(|_| "..").collect();
+        let line = command_line(&up.join(place.strip_prefix("/").unwrap()), 3);
+        let arguments = line.split_once(" --run ").unwrap().1;
+        let output = Command::new("sh").args(["-c", &format!("printf '%s|' {arguments}")]).output().unwrap();
+        let canonical = fs::canonicalize(&place).unwrap();
+        fs::remove_dir(&place).unwrap();
+        assert_eq!(String::from_utf8(output.stdout).unwrap(), format!("{}|--robot|3|", canonical.display()));
     }
 
     #[test]

@@ -21,6 +21,7 @@ pub mod report;
 pub mod roster;
 pub mod run;
 pub mod session;
+pub mod stdout;
 pub mod summary;
 pub mod text_table;
 pub mod verify;

@@ -43,6 +43,7 @@ fn figures(summary: &Summary, folder: &Path) -> String {
     let run = &summary.run;
     let metres = |value: Option<f64>| value.map_or("-".into(), |value| format!("{value:.6} m"));
     let ended = match summary.end {
+        _ if summary.guarantee_broken => "no: the guaranteed separation was broken".into(),
         End::Arrived if run.success => "yes".into(),
         End::Arrived => "no: everybody arrived, but not without collision".into(),
         End::OutOfTicks => format!("no: {} of {} arrived in time", arrived(summary), run.robots.len()),

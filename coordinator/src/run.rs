@@ -6,7 +6,9 @@
 use crate::clock::{Clock, Overruns};
 use crate::launch::{self, Agents, LaunchError};
 use crate::policy::{PolicyError, PolicyOptions, PolicySource, PolicySummary};
+use crate::record::RecordError;
 use crate::roster::{PeerLost, Roster};
+use crate::stdout::{self, PrintError};
 use agent::hearing::measured;
 use shared::Position;
 use shared::exchange::{Hub, Kind};
@@ -103,6 +105,12 @@ pub enum RunError {
     /// The policy server.
     #[error(transparent)]
     Policy(#[from] PolicyError),
+    /// The robots' commands cannot be printed.
+    #[error(transparent)]
+    Print(#[from] PrintError),
+    /// The observer could not record a tick.
+    #[error(transparent)]
+    Record(#[from] RecordError),
     /// `iceoryx2.toml` cannot be written.
     #[error("cannot write {}: {source}", path.display())]
     Config {
@@ -124,8 +132,6 @@ pub enum Outcome {
     Stopped,
     /// A robot ended or fell silent.
     PeerLost(PeerLost),
-    /// The observer could not go on.
-    Abandoned,
 }
 
 /// What the observer of a tick wants.
@@ -135,9 +141,10 @@ pub enum Verdict {
     Continue,
     /// The end: everybody has arrived.
     Arrived,
-    /// The end: it cannot go on.
-    Abandon,
 }
+
+/// Sees every tick that everybody has finished and decides what comes next.
+pub type Observer<'a> = dyn FnMut(&Tick<'_>) -> Result<Verdict, RecordError> + 'a;
 
 /// One tick, finished.
 #[derive(Debug)]
@@ -278,7 +285,7 @@ impl Team {
     fn start_robots(&mut self, robots: usize, stop: &StopFlag) -> Result<(), RunError> {
         for robot in 0..robots {
             match &self.options.agents {
-                Agents::ByHand => println!("{}", launch::command_line(&self.options.run, robot)),
+                Agents::ByHand => stdout::line(launch::command_line(&self.options.run, robot))?,
                 Agents::Launch(_) if stop.is_set() => return Ok(()), // `run` sees it, too
                 Agents::Launch(program) => {
                     let child = launch::start(program, &self.options.run, robot)?;
@@ -289,17 +296,20 @@ impl Team {
         Ok(())
     }
 
-    /// Runs all ticks. `observer` sees every tick that everybody has finished and decides what comes next.
-    pub fn run(mut self, stop: &StopFlag, observer: &mut dyn FnMut(&Tick<'_>) -> Verdict) -> Result<Ended, RunError> {
+    /// Runs all ticks, and ends the team in order whatever became of them.
+    pub fn run(mut self, stop: &StopFlag, observer: &mut Observer<'_>) -> Result<Ended, RunError> {
         let mut clock = if self.options.real_time { Clock::real_time(self.sample_time) } else { Clock::lock_step() };
         let mut ticks = 0;
-        let outcome = match self.gather(stop)? {
-            Wait::Done => self.tick_on(stop, observer, &mut clock, &mut ticks)?,
-            Wait::Stopped => Outcome::Stopped,
-            Wait::Lost(lost) => Outcome::PeerLost(lost),
+        let outcome = match self.gather(stop) {
+            Ok(Wait::Done) => self.tick_on(stop, observer, &mut clock, &mut ticks),
+            Ok(Wait::Stopped) => Ok(Outcome::Stopped),
+            Ok(Wait::Lost(lost)) => Ok(Outcome::PeerLost(lost)),
+            Err(error) => Err(error),
         };
         let policy = self.policy.take().map(PolicySource::end).transpose();
-        self.end(&outcome)?;
+        let told = self.end(outcome.as_ref().ok());
+        let outcome = outcome?; // what went wrong first is what counts
+        told?;
         Ok(Ended { outcome, ticks, overruns: clock.overruns(), policy: policy? })
     }
 
@@ -332,7 +342,7 @@ impl Team {
     fn tick_on(
         &mut self,
         stop: &StopFlag,
-        observer: &mut dyn FnMut(&Tick<'_>) -> Verdict,
+        observer: &mut Observer<'_>,
         clock: &mut Clock,
         ticks: &mut u64,
     ) -> Result<Outcome, RunError> {
@@ -375,10 +385,9 @@ impl Team {
             }
             *ticks = tick + 1;
             let seen = Tick { tick, steps: &finished, stamps: &self.stamps, announced, collected, late };
-            match observer(&seen) {
+            match observer(&seen)? {
                 Verdict::Continue => {}
                 Verdict::Arrived => return Ok(Outcome::Completed),
-                Verdict::Abandon => return Ok(Outcome::Abandoned),
             }
         }
         Ok(Outcome::TimedOut)
@@ -445,9 +454,9 @@ impl Team {
     }
 
     /// Ends the team: in order as far as its robots still listen.
-    fn end(&mut self, outcome: &Outcome) -> Result<(), ServiceError> {
+    fn end(&mut self, outcome: Option<&Outcome>) -> Result<(), ServiceError> {
         let grace = match outcome {
-            Outcome::PeerLost(lost) => {
+            Some(Outcome::PeerLost(lost)) => {
                 self.roster.kill(lost.robot);
                 SHORT_GRACE
             }

@@ -42,12 +42,15 @@ pub struct Summary {
     pub end: End,
     /// Which guarantee held, and why not where it did not.
     pub guarantee: String,
+    /// Whether somebody came nearer than was guaranteed; then the run was no success.
+    #[serde(default)]
+    pub guarantee_broken: bool,
     /// The figures that depend on the trajectory alone.
     #[serde(flatten)]
     pub run: RunSummary,
     /// Duration of a tick as the coordinator sees it.
     pub tick_latency: Percentiles,
-    /// From having all messages to having a plan, by robot.
+    /// Time in the QP's solvers, by robot.
     pub solve_latency: Vec<Percentiles>,
     /// What the policy did, in a run with one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -61,16 +64,19 @@ impl Summary {
         params: &Params,
         (profile, horizon): (&str, &str),
         end: End,
-        run: RunSummary,
+        mut run: RunSummary,
         timings: &Timings,
     ) -> Self {
+        let guarantee = guarantee::judge(scenario, params, &run);
+        run.success &= !guarantee.broken;
         Self {
             version: VERSION,
             scenario: scenario.name.clone(),
             profile: profile.into(),
             horizon: horizon.into(),
             end,
-            guarantee: guarantee::statement(scenario, params, &run),
+            guarantee: guarantee.statement,
+            guarantee_broken: guarantee.broken,
             run,
             tick_latency: timings.tick.percentiles(),
             solve_latency: timings.solve.iter().map(Latency::percentiles).collect(),

@@ -1,12 +1,19 @@
 //! Where the horizons of a run come from: `fixed:20`, `fixed:9,40`, `random:SEED`, `script:FILE`.
 //!
 //! A policy server answers anew at every tick and is therefore no table that could be read here; it
-//! hands its answers through [`HorizonSource::jitter`], so that the jitter is the same for all.
+//! hands its answers through [`HorizonSource::jitter`], so that the jitter is the same for all. A script
+//! alone is never jittered: it says exactly what is used, so the record of a run repeats the run.
 
 use crate::horizon::{Horizon, MAX_HORIZON};
 use std::fmt;
-use std::path::PathBuf;
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
+
+/// Largest script, MiB: over 100000 ticks of the largest team. A device or a pipe without an end is refused
+/// instead of filling the memory.
+const MAX_SCRIPT_MIB: u64 = 64;
 
 /// What the user asked for, `--horizon SPEC`.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -49,7 +56,17 @@ pub enum HorizonSourceError {
         /// The file.
         file: PathBuf,
         /// The system's reason.
-        source: std::io::Error,
+        source: io::Error,
+    },
+    /// The script has no end, or is no script.
+    #[error(
+        "--horizon script:{}: the file is larger than {MAX_SCRIPT_MIB} MiB, the most that a script of horizons can have; \
+         check the path",
+        .file.display()
+    )]
+    TooLarge {
+        /// The file.
+        file: PathBuf,
     },
     /// A line of the script.
     #[error(
@@ -146,8 +163,7 @@ impl HorizonSource {
             }
             HorizonSpec::Random(own) => Table::Random(own.unwrap_or(seed)),
             HorizonSpec::Script(file) => {
-                let text = std::fs::read_to_string(file)
-                    .map_err(|source| HorizonSourceError::Unreadable { file: file.clone(), source })?;
+                let text = read_script(file)?;
                 let rows = parse_script(&text, robots).map_err(|(line, reason)| HorizonSourceError::Line {
                     file: file.clone(),
                     line,
@@ -160,22 +176,32 @@ impl HorizonSource {
         Ok(Self { table, jitter, seed })
     }
 
-    /// N_i^k of `robot` at `tick`, jittered.
+    /// N_i^k of `robot` at `tick`: jittered, or exactly what the script says.
     pub fn horizon(&self, robot: usize, tick: u64) -> Horizon {
-        let horizon = match &self.table {
-            Table::Fixed(by_robot) => by_robot[robot],
-            Table::Random(seed) => Horizon::random(*seed, robot, tick),
+        match &self.table {
+            Table::Fixed(by_robot) => self.jitter(by_robot[robot], robot, tick),
+            Table::Random(seed) => self.jitter(Horizon::random(*seed, robot, tick), robot, tick),
             Table::Script { robots, rows } => {
                 let last = rows.len() / robots - 1;
                 rows[usize::try_from(tick).map_or(last, |tick| tick.min(last)) * robots + robot]
             }
-        };
-        self.jitter(horizon, robot, tick)
+        }
     }
 
     /// `horizon` moved by this run's jitter, for horizons that come from elsewhere.
     pub fn jitter(&self, horizon: Horizon, robot: usize, tick: u64) -> Horizon {
         horizon.jittered(self.jitter, self.seed, robot, tick)
+    }
+}
+
+/// The text of a script, of bounded size.
+fn read_script(file: &Path) -> Result<String, HorizonSourceError> {
+    let mut text = String::new();
+    let most = MAX_SCRIPT_MIB << 20;
+    match File::open(file).and_then(|opened| opened.take(most + 1).read_to_string(&mut text)) {
+        Ok(read) if read as u64 > most => Err(HorizonSourceError::TooLarge { file: file.into() }),
+        Ok(_) => Ok(text),
+        Err(source) => Err(HorizonSourceError::Unreadable { file: file.into(), source }),
     }
 }
 
@@ -246,12 +272,34 @@ mod tests {
     }
 
     #[test]
-    fn jitter_moves_every_kind_of_source() {
-        let spec: HorizonSpec = "fixed:20".parse().unwrap();
-        let source = HorizonSource::new(&spec, 2, 5, 2).unwrap();
-        let all: Vec<usize> = (0..100).map(|tick| steps(&source, 1, tick)).collect();
+    fn jitter_moves_horizons_that_are_fixed_or_drawn() {
+        let jittered = |spec: &str| HorizonSource::new(&spec.parse().unwrap(), 2, 5, 2).unwrap();
+        let (fixed, random) = (jittered("fixed:20"), jittered("random:7"));
+        let all: Vec<usize> = (0..100).map(|tick| steps(&fixed, 1, tick)).collect();
         assert!(all.iter().all(|n| (18..=22).contains(n)) && all.iter().any(|&n| n != 20));
-        assert_eq!(source.horizon(1, 3), Horizon::MAX.min(source.jitter(Horizon::saturating(20), 1, 3)));
+        assert_eq!(fixed.horizon(1, 3), fixed.jitter(Horizon::saturating(20), 1, 3));
+        assert!((0..100).any(|tick| random.horizon(0, tick) != Horizon::random(7, 0, tick)));
+    }
+
+    #[test]
+    fn the_recorded_horizons_of_a_jittered_run_repeat_it_as_a_script() {
+        let spec: HorizonSpec = "fixed:20".parse().unwrap();
+        let run = HorizonSource::new(&spec, 2, 5, 2).unwrap();
+        let record: String = (0..100).map(|k| format!("{k},{},{}\n", run.horizon(0, k), run.horizon(1, k))).collect();
+        let file = std::env::temp_dir().join(format!("vodca-script-{}.csv", std::process::id()));
+        std::fs::write(&file, record).unwrap();
+        let again = HorizonSource::new(&HorizonSpec::Script(file.clone()), 2, 5, 2);
+        std::fs::remove_file(file).unwrap();
+        let again = again.unwrap();
+        for (robot, tick) in (0..100).flat_map(|tick| [(0, tick), (1, tick)]) {
+            assert_eq!(again.horizon(robot, tick), run.horizon(robot, tick), "robot {robot}, tick {tick}");
+        }
+    }
+
+    #[test]
+    fn a_script_without_end_is_refused() {
+        let message = source("script:/dev/zero", 2).unwrap_err();
+        assert!(message.starts_with("--horizon script:/dev/zero: the file is larger than 64 MiB"), "{message}");
     }
 
     #[test]

@@ -108,8 +108,10 @@ pub struct Report {
     pub input: [f64; 2],
     /// True position at the end of the tick, m.
     pub next_position: [f64; 2],
-    /// Time from having all messages to having a plan, ns.
+    /// Time in the QP's solvers, ns.
     pub solve_ns: u64,
+    /// Time of the whole step, from having all messages to having moved, ns.
+    pub step_ns: u64,
     /// When what happened.
     pub stamps: Stamps,
     /// Collision rows of the QP.
@@ -243,6 +245,7 @@ impl Report {
             input: [0.0; 2],
             next_position: [0.0; 2],
             solve_ns: 0,
+            step_ns: 0,
             stamps: Stamps::default(),
             rows: 0,
             level: 0,
@@ -260,6 +263,7 @@ impl Report {
             input: step.input.into(),
             next_position: step.next_position.into(),
             solve_ns: step.solve_ns,
+            step_ns: step.step_ns,
             rows: step.rows,
             level: step.level as u8,
             status: step.status as u8,
@@ -283,6 +287,7 @@ impl Report {
             shielded: self.shielded == 1,
             plan,
             solve_ns: self.solve_ns,
+            step_ns: self.step_ns,
         })
     }
 }
@@ -316,6 +321,7 @@ mod tests {
             shielded: true,
             plan: Prediction::from_states(&states, Position::new(9.0, -9.0)),
             solve_ns: 1234,
+            step_ns: 5678,
         }
     }
 
@@ -348,6 +354,6 @@ mod tests {
         assert_eq!(size_of::<Observation>(), 4 * 8 + MAX_ROBOTS * 16);
         assert_eq!(size_of::<PolicyAnswer>(), 5 * 8 + 2 * 4 + 32 + MAX_ROBOTS);
         assert_eq!(size_of::<Plan>(), 3 * 8 + 2 * 4 + 16 + 50 * 16);
-        assert_eq!(size_of::<Report>(), size_of::<Plan>() + 8 + 48 + 8 + 5 * 8 + 8);
+        assert_eq!(size_of::<Report>(), size_of::<Plan>() + 8 + 48 + 2 * 8 + 5 * 8 + 8);
     }
 }

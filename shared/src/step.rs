@@ -61,6 +61,8 @@ pub struct Step {
     pub shielded: bool,
     /// The plan published at this tick.
     pub plan: Prediction,
-    /// Time from having all messages to having a plan, ns. Not part of what is compared.
+    /// Time in the QP's solvers, ns; 0 for a controller without a QP. Not part of what is compared.
     pub solve_ns: u64,
+    /// Time of the whole step, from having all messages to having moved, ns. Not part of what is compared.
+    pub step_ns: u64,
 }

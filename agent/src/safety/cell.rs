@@ -79,7 +79,7 @@ impl Cell {
         self.reach = self.reach.min(room.max(0.0));
     }
 
-    /// The cell as hard rows of the QP; `position` is x[0], m.
+    /// The cell as hard rows of the QP; `position` is `x[0]`, m.
     pub fn as_rows(&self, position: Position) -> impl Iterator<Item = Row> + '_ {
         self.rows.iter().map(move |row| Row {
             step: 1,

@@ -66,6 +66,12 @@ pub fn is_safe(step: Position, cell: &Cell, tolerance: f64) -> bool {
         && cell.rows.iter().all(|row| row.normal.dot(&step) >= row.demand - tolerance)
 }
 
+/// What every answer of [`nearest_safe`] is: safe, or standing still, because rows that demand an escape
+/// (`demand > 0`, starts too close) can contradict each other and then no move keeps them all.
+pub fn is_answer(step: Position, cell: &Cell, tolerance: f64) -> bool {
+    step == Position::zeros() || is_safe(step, cell, tolerance)
+}
+
 #[cfg(test)]
 mod tests {
     use super::super::cell::Present;
@@ -116,7 +122,31 @@ mod tests {
         assert!(step.norm() <= room + TOLERANCE && step.norm() > 0.9 * room);
     }
 
+    #[test]
+    fn escapes_that_contradict_each_other_stand_still() {
+        let cell = cell(&[(0.0, 0.02), (std::f64::consts::PI, 0.02)]);
+        assert_eq!(nearest_safe(Position::new(0.2, 0.1), &cell), (Position::zeros(), true));
+        assert!(!is_safe(Position::zeros(), &cell, 2.0 * TOLERANCE));
+        assert!(is_answer(Position::zeros(), &cell, 2.0 * TOLERANCE));
+        assert!(!is_answer(Position::new(0.2, 0.1), &cell, 2.0 * TOLERANCE));
+    }
+
     proptest! {
+        #[test]
+        fn demands_to_escape_are_kept_or_the_robot_stands_still(
+            rows in prop::collection::vec((0.0f64..6.3, -0.4f64..0.2), 0..6),
+            x in -0.5f64..0.5, y in -0.5f64..0.5,
+        ) {
+            let cell = cell(&rows);
+            let (step, _) = nearest_safe(Position::new(x, y), &cell);
+            prop_assert!(is_answer(step, &cell, 2.0 * TOLERANCE));
+            let possible = (0..=3600).any(|i| {
+                let at = |cell: i32| -0.3 + 0.01 * f64::from(cell);
+                is_safe(Position::new(at(i % 61), at(i / 61 % 61)), &cell, 0.0)
+            });
+            prop_assert!(!possible || is_safe(step, &cell, 2.0 * TOLERANCE));
+        }
+
         #[test]
         fn the_answer_is_safe_and_nearest(
             rows in prop::collection::vec((0.0f64..6.3, -0.4f64..0.0), 0..8),

@@ -8,6 +8,7 @@ use crate::page;
 use crate::parallel;
 use crate::progress::Progress;
 use crate::record::folder::{RecordError, RunFolder};
+use crate::stdout;
 use std::path::PathBuf;
 
 /// Arguments of `compare`.
@@ -80,16 +81,16 @@ pub fn run(args: Args) -> Ending {
     write_summary(&folder, &comparison).map_err(Failure::broken)?;
     let page = page::compare(&comparison, &plan, &jobs, &runs);
     folder.write(PAGE, page.as_bytes()).map_err(Failure::broken)?;
-    print!("{}", table.aligned());
+    stdout::text(table.aligned())?;
     for line in verdicts(&plan, &jobs, &runs) {
-        println!("{line}");
+        stdout::line(line)?;
     }
-    println!(
+    stdout::line(format_args!(
         "{} runs, each a line of {}; charts: {}",
         runs.len(),
         folder.file("runs.csv").display(),
         folder.file(PAGE).display()
-    );
+    ))?;
     Ok(Outcome::Done)
 }
 

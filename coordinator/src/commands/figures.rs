@@ -3,6 +3,7 @@
 use crate::exit::{Ending, Failure, Outcome};
 use crate::figures;
 use crate::record::folder::replace;
+use crate::stdout;
 use std::path::PathBuf;
 
 /// Arguments of `figures`.
@@ -21,10 +22,13 @@ pub struct Args {
 /// Draws them.
 pub fn run(args: Args) -> Ending {
     std::fs::create_dir_all(&args.out).map_err(Failure::usage)?;
-    let figures = figures::all(|what| println!("{what}: done")).map_err(Failure::broken)?;
+    let figures = figures::all(|what| {
+        let _ = stdout::line(format_args!("{what}: done")); // an error comes again with the last line
+    })
+    .map_err(Failure::broken)?;
     for (name, text) in &figures {
         replace(&args.out.join(name), text.as_bytes()).map_err(Failure::broken)?;
     }
-    println!("{} figures in {}", figures.len(), args.out.display());
+    stdout::line(format_args!("{} figures in {}", figures.len(), args.out.display()))?;
     Ok(Outcome::Done)
 }

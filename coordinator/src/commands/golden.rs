@@ -1,6 +1,7 @@
 //! `golden`: checks files of reference results in this process.
 
 use crate::exit::{Ending, Failure, Outcome};
+use crate::stdout;
 use agent::golden::{Deviation, Verdict, check_folder};
 use std::path::PathBuf;
 
@@ -22,9 +23,11 @@ pub fn run(args: Args) -> Ending {
     for Verdict { case, deviation } in &verdicts {
         if let Some(Deviation { tick, robot, what, deviation, allowed }) = deviation {
             bad += 1;
-            println!("{case}: tick {tick}, robot {robot}: {what} deviates by {deviation:.3e}, allowed {allowed:.3e}");
+            stdout::line(format_args!(
+                "{case}: tick {tick}, robot {robot}: {what} deviates by {deviation:.3e}, allowed {allowed:.3e}"
+            ))?;
         }
     }
-    println!("{} cases, {bad} bad", verdicts.len());
+    stdout::line(format_args!("{} cases, {bad} bad", verdicts.len()))?;
     Ok(if bad == 0 { Outcome::Done } else { Outcome::Failed })
 }

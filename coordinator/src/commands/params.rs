@@ -1,6 +1,7 @@
 //! `params`: all parameters with value, unit, range and effect.
 
 use crate::exit::{Ending, Failure, Outcome};
+use crate::stdout;
 use shared::params::{Params, Profile, table};
 
 /// Arguments of `params`.
@@ -21,6 +22,6 @@ pub struct Args {
 /// Prints the list.
 pub fn run(args: Args) -> Ending {
     let params = Params::resolve(args.profile, "-", &toml::Table::new(), &args.set).map_err(Failure::usage)?;
-    print!("{}", table::listing(&params));
+    stdout::text(table::listing(&params))?;
     Ok(Outcome::Done)
 }

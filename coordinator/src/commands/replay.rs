@@ -3,6 +3,7 @@
 use crate::exit::{Ending, Failure, Outcome};
 use crate::in_process::run_team;
 use crate::record::{PARAMS_FILE, SCENARIO_FILE, horizons, trajectory};
+use crate::stdout;
 use shared::horizon_source::{HorizonSource, HorizonSpec};
 use shared::params::Params;
 use shared::scenario::Scenario;
@@ -62,15 +63,18 @@ pub struct Difference {
 pub fn run(args: Args) -> Ending {
     match replay(&args.run).map_err(Failure::broken)? {
         Repetition { difference: Some(difference), .. } => {
-            println!("{}: {difference}", args.run.display());
+            stdout::line(format_args!("{}: {difference}", args.run.display()))?;
             Ok(Outcome::Failed)
         }
         Repetition { ticks, whole: true, .. } => {
-            println!("{}: {ticks} ticks repeated, every byte equal", args.run.display());
+            stdout::line(format_args!("{}: {ticks} ticks repeated, every byte equal", args.run.display()))?;
             Ok(Outcome::Done)
         }
         Repetition { ticks, .. } => {
-            println!("{}: the record was cut; its {ticks} ticks repeated, every byte equal", args.run.display());
+            stdout::line(format_args!(
+                "{}: the record was cut; its {ticks} ticks repeated, every byte equal",
+                args.run.display()
+            ))?;
             Ok(Outcome::Done)
         }
     }

@@ -4,6 +4,7 @@ use crate::exit::{Ending, Failure, Outcome};
 use crate::page;
 use crate::page::recorded::Recorded;
 use crate::record::folder::{RecordError, replace};
+use crate::stdout;
 use std::path::{Path, PathBuf};
 
 /// Name of the page that a run's own folder gets.
@@ -31,7 +32,7 @@ pub fn run(args: Args) -> Ending {
         args.runs.iter().map(|run| Recorded::read(run)).collect::<Result<_, _>>().map_err(Failure::broken)?;
     let path = args.out.unwrap_or_else(|| args.runs[0].join(PAGE));
     let size = write(&path, &runs).map_err(Failure::broken)?;
-    println!("{} ({:.0} kB): open it in a browser", path.display(), size as f64 / 1e3);
+    stdout::line(format_args!("{} ({:.0} kB): open it in a browser", path.display(), size as f64 / 1e3))?;
     Ok(Outcome::Done)
 }
 

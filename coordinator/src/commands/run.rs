@@ -6,10 +6,11 @@ use crate::exit::{self, Ending, Failure};
 use crate::launch::Agents;
 use crate::page::recorded::Recorded;
 use crate::record::about::{Machine, Versions};
-use crate::record::{About, RecordError, RunFolder};
+use crate::record::{About, RunFolder};
 use crate::report::report;
 use crate::run::{Options, Outcome, Team, Tick, Verdict};
 use crate::session::Session;
+use crate::stdout;
 use crate::summary::End;
 use crate::view::{Views, Wanted};
 use shared::exchange::Kind;
@@ -175,44 +176,34 @@ fn play(
     stop: &StopFlag,
 ) -> Ending {
     let team = Team::launch(scenario, params, options, stop).map_err(Failure::broken)?;
-    let mut unrecorded: Option<RecordError> = None;
     let mut observer = |tick: &Tick<'_>| {
         let duration = Duration::from_nanos(tick.collected.saturating_sub(tick.announced));
         let observed = session.tick(tick.tick, tick.steps, duration);
         views.tick(tick.tick, tick.steps, duration, session.metrics());
-        match observed {
-            Ok(false) => Verdict::Continue,
-            Ok(true) => Verdict::Arrived,
-            Err(error) => {
-                unrecorded = Some(error);
-                Verdict::Abandon
-            }
-        }
+        Ok(if observed? { Verdict::Arrived } else { Verdict::Continue })
     };
     let ended = team.run(stop, &mut observer);
     views.close(); // the terminal first: what follows is to be read
     let ended = ended.map_err(Failure::broken)?;
-    if let Some(error) = unrecorded {
-        return Err(Failure::broken(error));
-    }
     let end = match &ended.outcome {
         Outcome::Completed => End::Arrived,
         Outcome::TimedOut => End::OutOfTicks,
         Outcome::Stopped => End::Interrupted,
-        Outcome::PeerLost(_) | Outcome::Abandoned => End::PeerLost,
+        Outcome::PeerLost(_) => End::PeerLost,
     };
     let (summary, folder) = session.finish(end, ended.policy.clone()).map_err(Failure::broken)?;
-    print!("{}", report(&summary, &folder));
+    stdout::text(report(&summary, &folder))?;
     if ended.overruns.count > 0 {
-        println!(
+        stdout::line(format_args!(
             "{:<16}{} ticks began late, the worst by {:.1} ms",
             "real time",
             ended.overruns.count,
             ended.overruns.worst_ns as f64 / 1e6
-        );
+        ))?;
     }
     match ended.outcome {
         Outcome::PeerLost(lost) => Err(Failure::peer_lost(lost)),
+        _ if summary.guarantee_broken => Ok(exit::Outcome::Failed),
         Outcome::Stopped => Ok(exit::Outcome::Done),
         _ if summary.run.success => Ok(exit::Outcome::Done),
         _ => Ok(exit::Outcome::Failed),
@@ -222,12 +213,12 @@ fn play(
 /// Says how to see the run in a browser, or has written its page already.
 fn point_to_page(folder: &Path, wanted: bool) -> Result<(), Failure> {
     if !wanted {
-        println!("{:<16}./run.sh report {}", "to see it", folder.display());
+        stdout::line(format_args!("{:<16}./run.sh report {}", "to see it", folder.display()))?;
         return Ok(());
     }
     let path = folder.join(page::PAGE);
     let recorded = Recorded::read(folder).map_err(Failure::broken)?;
     page::write(&path, &[recorded]).map_err(Failure::broken)?;
-    println!("{:<16}{}", "page", path.display());
+    stdout::line(format_args!("{:<16}{}", "page", path.display()))?;
     Ok(())
 }

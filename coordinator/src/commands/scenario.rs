@@ -1,8 +1,10 @@
 //! `scenario`: lists, checks and generates scenarios.
 
 use crate::exit::{Ending, Failure, Outcome};
+use crate::stdout;
 use clap::Subcommand;
-use shared::params::Profile;
+use shared::metrics::RunMetrics;
+use shared::params::{Params, Profile};
 use shared::scenario::{Scenario, names, set_up};
 use std::path::PathBuf;
 
@@ -47,19 +49,33 @@ enum Action {
 /// Does what was asked.
 pub fn run(args: Args) -> Ending {
     match args.action {
-        Action::List => names().for_each(|name| println!("{name}")),
+        Action::List => {
+            for name in names() {
+                stdout::line(name)?;
+            }
+        }
         Action::Check { scenario, profile, set } => {
-            let (scenario, params) = set_up(Some(&scenario), None, profile, &set).map_err(Failure::broken)?;
-            println!("{}", describe(&scenario, params.model.min_separation));
+            let (scenario, params) = set_up(Some(&scenario), None, profile, &set).map_err(Failure::usage)?;
+            stdout::line(describe(&scenario, &params))?;
         }
         Action::Generate { scenario, out } => generate(&scenario, out)?,
     }
     Ok(Outcome::Done)
 }
 
-fn describe(scenario: &Scenario, min_separation: f64) -> String {
+fn describe(scenario: &Scenario, params: &Params) -> String {
+    // Before the first tick the metrics know the distances at the start.
+    let least = RunMetrics::new(scenario, params).min_separation();
+    let wanted = params.model.min_separation;
+    let nearest = match least {
+        least if least.is_infinite() => "nothing to meet".into(),
+        least if least < wanted - 1e-9 => {
+            format!("{least:.3} m apart at the start, nearer than {wanted} m (allow_close_start)")
+        }
+        least => format!("at least {least:.3} m apart at the start"),
+    };
     format!(
-        "{}: {} robots, {} obstacles, straight lines {:.1} m, at most {} ticks, nothing nearer than {min_separation} m: usable",
+        "{}: {} robots, {} obstacles, straight lines {:.1} m, at most {} ticks, {nearest}: usable",
         scenario.name,
         scenario.robots.len(),
         scenario.obstacles.len(),
@@ -79,11 +95,34 @@ struct WriteError {
 fn generate(spec: &str, out: Option<PathBuf>) -> Result<(), Failure> {
     let text = Scenario::resolve(Some(spec), None).and_then(|scenario| scenario.to_toml()).map_err(Failure::usage)?;
     let Some(path) = out else {
-        print!("{text}");
+        stdout::text(text)?;
         return Ok(());
     };
     // Never over a file that somebody may have edited.
     let written =
         std::fs::File::create_new(&path).and_then(|mut file| std::io::Write::write_all(&mut file, text.as_bytes()));
     written.map_err(|source| Failure::broken(WriteError { path, source }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::record::samples;
+
+    #[test]
+    fn the_description_tells_the_actual_distance_at_the_start() {
+        let (mut scenario, params) = (samples::scenario(2), Params::safe());
+        scenario.obstacles.clear();
+        assert!(describe(&scenario, &params).contains("at least 10.000 m apart"), "{}", describe(&scenario, &params));
+        scenario.robots[1].start.x = 1.2;
+        assert!(describe(&scenario, &params).contains(" 1.200 m apart at the start, nearer than 1.5 m"));
+        scenario.robots.truncate(1);
+        assert!(describe(&scenario, &params).contains("nothing to meet"));
+    }
+
+    #[test]
+    fn a_scenario_that_cannot_be_used_is_wrong_usage() {
+        let action = Action::Check { scenario: "nowhere".into(), profile: Profile::Safe, set: vec![] };
+        assert!(matches!(run(Args { action }), Err(Failure::Usage(_))));
+    }
 }

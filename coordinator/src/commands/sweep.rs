@@ -1,10 +1,11 @@
 //! `sweep`: one scenario with many horizons or seeds, in this process.
 
-use super::range::Numbers;
+use super::range::{Numbers, NumbersError};
 use crate::exit::{Ending, Failure, Outcome};
 use crate::in_process::run_whole;
 use crate::progress::Progress;
 use crate::record::folder::new_file;
+use crate::stdout;
 use crate::text_table::TextTable;
 use crate::{parallel, record};
 use shared::horizon_source::{HorizonSource, HorizonSourceError, HorizonSpec};
@@ -39,9 +40,9 @@ pub struct Args {
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
     /// Last tick, instead of the scenario's
-    #[arg(long)]
+    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
     max_ticks: Option<u64>,
-    /// The CSV to write; left out, a new file in runs/
+    /// The CSV to write, a new file; left out, a new file in runs/
     #[arg(long)]
     out: Option<PathBuf>,
 }
@@ -50,19 +51,27 @@ pub struct Args {
 #[derive(Clone, Debug)]
 struct Horizons(Vec<HorizonSpec>);
 
-impl FromStr for Horizons {
-    type Err = HorizonSourceError;
+/// Not such a list. Each kind names its own forms.
+#[derive(Debug, thiserror::Error)]
+enum HorizonsError {
+    /// Of the numbers.
+    #[error(transparent)]
+    Numbers(#[from] NumbersError),
+    /// Of one of the horizons.
+    #[error(transparent)]
+    Source(#[from] HorizonSourceError),
+}
 
-    fn from_str(text: &str) -> Result<Self, HorizonSourceError> {
-        let wrong = |error: super::range::NumbersError| HorizonSourceError::Spec {
-            spec: text.into(),
-            reason: error.to_string(),
-        };
+impl FromStr for Horizons {
+    type Err = HorizonsError;
+
+    fn from_str(text: &str) -> Result<Self, HorizonsError> {
         let (kind, list) = text.split_once(':').unwrap_or(("fixed", text));
         match kind {
             "fixed" | "random" => {
-                let Numbers(numbers) = list.parse().map_err(wrong)?;
-                numbers.iter().map(|number| format!("{kind}:{number}").parse()).collect::<Result<_, _>>().map(Self)
+                let Numbers(numbers) = list.parse()?;
+                let spec = |number: &u64| format!("{kind}:{number}").parse::<HorizonSpec>();
+                Ok(Self(numbers.iter().map(spec).collect::<Result<_, _>>()?))
             }
             _ => Ok(Self(vec![text.parse()?])),
         }
@@ -75,10 +84,12 @@ struct Job {
     scenario: Scenario,
 }
 
-/// Runs the sweep, prints the table and writes it as CSV.
+/// Runs the sweep, writes the table as CSV and prints it.
 pub fn run(args: Args) -> Ending {
     let (scenario, params) = set_up(Some(&args.scenario), None, args.profile, &args.set).map_err(Failure::usage)?;
+    params.warnings().iter().for_each(|warning| tracing::warn!("{warning}"));
     let jobs = jobs(&args, &scenario, &params).map_err(Failure::usage)?;
+    let path = new_file(args.out.as_deref(), &format!("sweep-{}", scenario.name), "csv").map_err(Failure::usage)?;
     let progress = Progress::of_work(jobs.len());
     let results =
         parallel::map(&jobs, |job| run_whole(&job.scenario, &params, &job.source, |_| {}), || progress.advance());
@@ -99,11 +110,11 @@ pub fn run(args: Args) -> Ending {
     for (job, result) in jobs.iter().zip(&results) {
         table.row(row(job, result));
     }
-    print!("{}", table.aligned());
-    println!("{}", verdict(&jobs, &results));
-    let path = new_file(args.out.as_deref(), &format!("sweep-{}", scenario.name), "csv").map_err(Failure::broken)?;
+    // Whatever becomes of the terminal, the results are kept.
     record::folder::write_new(&path, table.csv().as_bytes()).map_err(Failure::broken)?;
-    println!("{}", path.display());
+    stdout::text(table.aligned())?;
+    stdout::line(verdict(&jobs, &results))?;
+    stdout::line(path.display())?;
     Ok(Outcome::Done)
 }
 
@@ -166,7 +177,10 @@ mod tests {
         assert_eq!(specs("5,10").unwrap(), ["fixed:5", "fixed:10"]);
         assert_eq!(specs("random:0..2").unwrap(), ["random:0", "random:1", "random:2"]);
         assert!(specs("0..3").unwrap_err().to_string().contains("1..=49"));
-        assert!(specs("twenty").unwrap_err().to_string().contains("fixed:20"));
+        for text in ["twenty", "5,x", "random:5,x"] {
+            let message = specs(text).unwrap_err().to_string();
+            assert!(message.contains("1..49") && !message.contains("script"), "one list of forms: {message}");
+        }
     }
 
     #[test]
@@ -186,5 +200,24 @@ mod tests {
         let text = std::fs::read_to_string(out).unwrap();
         assert_eq!(text.lines().count(), 1 + 2 * 3);
         assert!(text.lines().nth(1).unwrap().starts_with("fixed:10,0,no,3,"), "{text}");
+    }
+
+    #[test]
+    fn a_file_that_exists_is_refused_before_any_work() {
+        let place = tempfile::tempdir().unwrap();
+        let out = place.path().join("old.csv");
+        std::fs::write(&out, "kept").unwrap();
+        let args = Args {
+            scenario: "ring:2".into(),
+            horizons: "10".parse().unwrap(),
+            seeds: None,
+            profile: Profile::Safe,
+            set: vec![],
+            max_ticks: Some(1),
+            out: Some(out.clone()),
+        };
+        let Err(Failure::Usage(error)) = run(args) else { panic!("it is wrong usage") };
+        assert!(error.to_string().contains("never written over"), "{error}");
+        assert_eq!(std::fs::read(out).unwrap(), b"kept");
     }
 }

@@ -1,6 +1,7 @@
 //! `verify`: checks a recorded run from its CSV alone.
 
 use crate::exit::{Ending, Failure, Outcome};
+use crate::stdout;
 use std::path::PathBuf;
 
 /// Arguments of `verify`.
@@ -19,20 +20,25 @@ pub struct Args {
 pub fn run(args: Args) -> Ending {
     let report = crate::verify::verify(&args.run).map_err(Failure::broken)?;
     for finding in &report.findings {
-        println!("{finding}");
+        stdout::line(finding)?;
     }
     if !report.findings.is_empty() {
-        println!("{}: {} checks failed", args.run.display(), report.findings.len());
+        stdout::line(format_args!("{}: {} checks failed", args.run.display(), report.findings.len()))?;
         return Ok(Outcome::Failed);
     }
-    println!(
+    let summary = match (report.cut, report.ticks) {
+        (false, _) => "the summary is right".into(),
+        (true, 0) => "the record was cut before the end of tick 0 and has no summary".into(),
+        (true, ticks) => format!("the record was cut after tick {} and has no summary", ticks - 1),
+    };
+    stdout::line(format_args!(
         "{}: {} ticks of {} robots follow the model within their input bounds; minimum separation {:.6} m; {} arrived; \
-         the summary is right",
+         {summary}",
         args.run.display(),
         report.ticks,
         report.robots,
         report.min_separation,
         report.arrived
-    );
+    ))?;
     Ok(Outcome::Done)
 }

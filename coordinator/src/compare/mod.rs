@@ -38,7 +38,7 @@ impl Job {
     pub fn run(&self) -> Run {
         let mut nanoseconds: Vec<u64> = Vec::new();
         let mut summary = run_whole(&self.scenario, &self.params, &self.source, |steps| {
-            nanoseconds.extend(steps.iter().map(|step| step.solve_ns));
+            nanoseconds.extend(steps.iter().map(|step| step.step_ns));
         });
         summary.robots = Vec::new(); // Ten thousand runs are kept at once.
         let count = nanoseconds.len().max(1);

@@ -99,7 +99,10 @@ impl Plan {
     fn is_random(&self, params: &Params, horizon: &HorizonSpec) -> bool {
         let disturbance = &params.disturbance;
         let own = match params.controller.kind {
-            ControllerKind::Vodca => params.horizon.jitter > 0 || *horizon == HorizonSpec::Random(None),
+            ControllerKind::Vodca => match horizon {
+                HorizonSpec::Script(_) => false, // never jittered
+                _ => params.horizon.jitter > 0 || *horizon == HorizonSpec::Random(None),
+            },
             ControllerKind::Orca => params.orca.push > 0.0,
         };
         own || self.jitter_start > 0.0

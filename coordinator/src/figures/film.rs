@@ -60,9 +60,9 @@ impl Setting {
 
 impl Film {
     /// Mean planning time of a robot in a tick, us.
-    pub(super) fn mean_solve_us(&self) -> f64 {
+    pub(super) fn mean_step_us(&self) -> f64 {
         let count = self.ticks.iter().flatten().count().max(1);
-        self.ticks.iter().flatten().map(|step| step.solve_ns as f64).sum::<f64>() / count as f64 / 1e3
+        self.ticks.iter().flatten().map(|step| step.step_ns as f64).sum::<f64>() / count as f64 / 1e3
     }
 
     /// Name of its bar.

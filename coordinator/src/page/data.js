@@ -25,7 +25,7 @@ class Run {
     for (const name of ["horizons", "rows", "levels", "statuses"]) this[name] = decode(data[name], Uint8Array);
     this.separation = decode(data.separation, Float32Array);
     this.tickMs = decode(data.tickMs, Float32Array);
-    this.solveUs = decode(data.solveUs, Float32Array);
+    this.stepUs = decode(data.stepUs, Float32Array);
     this.grid = data.plans.grid;
     this.planLengths = decode(data.plans.lengths, Uint8Array);
     this.planStarts = starts(this.planLengths);

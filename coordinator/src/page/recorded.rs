@@ -111,6 +111,7 @@ fn read_step(line: &str, set_point: Position, sample_time: f64) -> Option<Step> 
         shielded: false,
         plan: Prediction::roll_out(position, set_point, sample_time, &[input]),
         solve_ns: 0,
+        step_ns: 0,
     })
 }
 
@@ -130,7 +131,7 @@ fn add_latency(ticks: &mut [Vec<Step>], text: &str) -> Vec<u64> {
         let mut numbers = line.split(',').skip(1).map_while(|field| field.parse().ok());
         let Some(duration) = numbers.next() else { break };
         durations.push(duration);
-        steps.iter_mut().zip(numbers).for_each(|(step, nanoseconds)| step.solve_ns = nanoseconds);
+        steps.iter_mut().zip(numbers).for_each(|(step, nanoseconds)| step.step_ns = nanoseconds);
     }
     durations
 }

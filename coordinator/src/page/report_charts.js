@@ -23,7 +23,7 @@ function scalesOf(runs) {
     horizon: [0, Math.max(10, ...runs.map(run => largest(run.horizons)))],
     separation: [0, Math.max(...runs.map(run => Math.max(largest(all(run).filter(Number.isFinite)), 2 * run.layout.minSeparation)))],
     tickMs: [0, 1.1 * Math.max(0.1, ...runs.map(run => largest(run.tickMs)))],
-    solveUs: [0, 1.1 * Math.max(10, ...runs.map(run => largest(run.solveUs)))],
+    stepUs: [0, 1.1 * Math.max(10, ...runs.map(run => largest(run.stepUs)))],
   };
 }
 
@@ -61,8 +61,8 @@ function chartsOf(run, scales, bounds, place) {
 
   if (run.tickMs.length) {
     over("Latency of a tick (all robots)", "tick (ms)", scales.tickMs).line(held(run, tick => run.tickMs[tick]), { stroke: "#009e73" });
-    const solve = over("Time from messages to plan", "planning (µs)", scales.solveUs);
-    perRobot(solve, (tick, i) => run.at(run.solveUs, tick, i));
+    const solve = over("Time from messages to plan", "planning (µs)", scales.stepUs);
+    perRobot(solve, (tick, i) => run.at(run.stepUs, tick, i));
   }
   return charts;
 }

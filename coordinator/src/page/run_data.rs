@@ -51,7 +51,7 @@ pub fn run(recorded: &Recorded) -> Value {
     let last = last.unwrap_or_else(|| scenario.robots.iter().map(|robot| robot.start).collect());
     let positions = steps().map(|step| step.position).chain(last);
     let has_latency = recorded.tick_ns.len() == ticks.len();
-    let solve = steps().filter(|_| has_latency).map(|step| step.solve_ns as f64 / 1e3);
+    let step_us = steps().filter(|_| has_latency).map(|step| step.step_ns as f64 / 1e3);
     json!({
         "folder": recorded.folder.display().to_string(),
         "about": recorded.about,
@@ -66,7 +66,7 @@ pub fn run(recorded: &Recorded) -> Value {
         "statuses": bytes(steps().map(|step| step.status as usize)),
         "separation": floats(separations(scenario, params, ticks)),
         "tickMs": floats(recorded.tick_ns.iter().filter(|_| has_latency).map(|&ns| ns as f64 / 1e6)),
-        "solveUs": floats(solve),
+        "stepUs": floats(step_us),
         "plans": plans(params, ticks),
         "lines": lines(scenario, params, ticks),
     })

@@ -38,6 +38,12 @@ pub enum RecordError {
         /// What the system said.
         source: io::Error,
     },
+    /// The file is there already.
+    #[error("{} exists already; results are never written over: give another file with --out FILE", path.display())]
+    Exists {
+        /// The file.
+        path: PathBuf,
+    },
     /// A value has no form in the file's format.
     #[error("cannot express {what} in {}: {reason}; please report this as a fault of vodca", path.display())]
     Encode {
@@ -50,10 +56,19 @@ pub enum RecordError {
     },
 }
 
-/// The folder of a run, empty when it was opened.
+/// The folder of a run, empty when it was opened and nobody else's until it is dropped.
 #[derive(Debug)]
 pub struct RunFolder {
     path: PathBuf,
+}
+
+/// Says that a run is writing to the folder. Of two runs that are given one folder one can make it.
+const CLAIM: &str = ".claimed";
+
+impl Drop for RunFolder {
+    fn drop(&mut self) {
+        let _ = fs::remove_file(self.file(CLAIM)); // best effort: it does no harm in a folder that is full
+    }
 }
 
 impl RunFolder {
@@ -76,16 +91,32 @@ impl RunFolder {
     /// The folder `path`, made when absent; it must be empty and writable.
     pub fn at(path: &Path) -> Result<Self, RecordError> {
         let refused = |source| RecordError::Folder { path: path.to_owned(), source };
+        let not_empty = |entry| RecordError::NotEmpty { path: path.to_owned(), entry };
+        let first_entry = || -> Result<Option<String>, RecordError> {
+            for entry in fs::read_dir(path).map_err(refused)? {
+                let name = entry.map_err(refused)?.file_name().to_string_lossy().into_owned();
+                if name != CLAIM {
+                    return Ok(Some(name));
+                }
+            }
+            Ok(None)
+        };
         fs::create_dir_all(path).map_err(refused)?;
-        if let Some(entry) = fs::read_dir(path).map_err(refused)?.next() {
-            let entry = entry.map_err(refused)?.file_name().to_string_lossy().into_owned();
-            return Err(RecordError::NotEmpty { path: path.to_owned(), entry });
+        if let Some(entry) = first_entry()? {
+            return Err(not_empty(entry));
+        }
+        // This also finds out now, rather than after the team has started, whether anything can be written.
+        match File::create_new(path.join(CLAIM)) {
+            Ok(_) => {}
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => return Err(not_empty(CLAIM.into())),
+            Err(source) => return Err(refused(source)),
         }
         let folder = Self { path: path.to_owned() };
-        // Found out now rather than after the team has started.
-        let trial = folder.file(".writable");
-        File::create(&trial).and_then(|_| fs::remove_file(&trial)).map_err(refused)?;
-        Ok(folder)
+        // Another run may have come and gone between the look and the claim.
+        match first_entry()? {
+            Some(entry) => Err(not_empty(entry)),
+            None => Ok(folder),
+        }
     }
 
     /// `parent/name`, or `parent/name-2` and so on when another run took that name in the same second.
@@ -126,10 +157,10 @@ impl RunFolder {
     }
 }
 
-/// `out`, or a new `runs/<UTC time>-<name>.<ending>` whose folder exists.
+/// `out`, which must not exist yet, or a new `runs/<UTC time>-<name>.<ending>` whose folder exists.
 pub fn new_file(out: Option<&Path>, name: &str, ending: &str) -> Result<PathBuf, RecordError> {
-    if let Some(out) = out {
-        return Ok(out.to_owned());
+    if let Some(path) = out.map(Path::to_owned) {
+        return if path.symlink_metadata().is_ok() { Err(RecordError::Exists { path }) } else { Ok(path) };
     }
     let runs = Path::new("runs");
     fs::create_dir_all(runs).map_err(|source| RecordError::Folder { path: runs.to_owned(), source })?;
@@ -148,7 +179,10 @@ pub fn replace(path: &Path, content: &[u8]) -> Result<(), RecordError> {
 /// Writes a file that must not exist yet.
 pub fn write_new(path: &Path, content: &[u8]) -> Result<(), RecordError> {
     let written = File::create_new(path).and_then(|mut file| file.write_all(content));
-    written.map_err(|source| RecordError::Write { path: path.to_owned(), source })
+    written.map_err(|source| match source.kind() {
+        io::ErrorKind::AlreadyExists => RecordError::Exists { path: path.to_owned() },
+        _ => RecordError::Write { path: path.to_owned(), source },
+    })
 }
 
 /// A file that grows record by record. When a write fails midway the file is cut back to its last whole
@@ -163,8 +197,14 @@ pub struct GrowingFile {
 impl GrowingFile {
     /// Makes the file; it must not exist unless it is a device.
     pub fn create(path: PathBuf) -> Result<Self, RecordError> {
-        match File::create(&path) {
+        let is_device = fs::metadata(&path).is_ok_and(|about| !about.is_file() && !about.is_dir());
+        let made = if is_device { File::create(&path) } else { File::create_new(&path) };
+        match made {
             Ok(file) => Ok(Self { path, file, whole: 0 }),
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
+                let entry = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+                Err(RecordError::NotEmpty { path: path.parent().unwrap_or(Path::new(".")).to_owned(), entry })
+            }
             Err(source) => Err(RecordError::Write { path, source }),
         }
     }
@@ -257,7 +297,36 @@ mod tests {
         folder.write("a.txt", b"one").unwrap();
         folder.write("a.txt", b"two").unwrap();
         assert_eq!(fs::read(folder.file("a.txt")).unwrap(), b"two");
-        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+        drop(folder);
+        assert_eq!(fs::read_dir(place.path().join("new/run")).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn of_many_runs_with_one_folder_one_gets_it() {
+        let place = tempfile::tempdir().unwrap();
+        let path = place.path().join("run");
+        let gate = std::sync::Barrier::new(8);
+        let open = || {
+            gate.wait();
+            RunFolder::at(&path)
+        };
+        let opened: Vec<_> = std::thread::scope(|scope| {
+            let threads: Vec<_> = (0..8).map(|_| scope.spawn(open)).collect();
+            threads.into_iter().map(|thread| thread.join().unwrap()).collect()
+        });
+        assert_eq!(opened.iter().filter(|folder| folder.is_ok()).count(), 1);
+        let refused = opened.into_iter().filter_map(Result::err);
+        assert!(refused.into_iter().all(|error| error.to_string().contains("never overwritten")));
+    }
+
+    #[test]
+    fn a_growing_file_is_never_put_over_another() {
+        let place = tempfile::tempdir().unwrap();
+        let path = place.path().join("trajectory.csv");
+        fs::write(&path, "kept").unwrap();
+        let message = GrowingFile::create(path.clone()).unwrap_err().to_string();
+        assert!(message.contains("already holds \"trajectory.csv\""), "{message}");
+        assert_eq!(fs::read(path).unwrap(), b"kept");
     }
 
     #[test]

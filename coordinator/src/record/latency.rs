@@ -1,4 +1,4 @@
-//! `latency.csv`: how long every tick took, and every robot's planning in it. Measured, so never compared.
+//! `latency.csv`: how long every tick took, and every robot's step in it. Measured, so never compared.
 
 use super::folder::{GrowingFile, RecordError};
 use shared::step::Step;
@@ -9,7 +9,7 @@ use std::time::Duration;
 /// Name of the file in a run folder.
 pub const FILE: &str = "latency.csv";
 
-/// Writes the file tick by tick: the tick, its duration, then one planning time per robot, all ns.
+/// Writes the file tick by tick: the tick, its duration, then the time of one step per robot, all ns.
 #[derive(Debug)]
 pub struct LatencyWriter {
     file: GrowingFile,
@@ -30,7 +30,7 @@ impl LatencyWriter {
         self.text.clear();
         let _ = write!(self.text, "{tick},{}", duration.as_nanos()); // writing to a String cannot fail
         for step in steps {
-            let _ = write!(self.text, ",{}", step.solve_ns);
+            let _ = write!(self.text, ",{}", step.step_ns);
         }
         self.text.push('\n');
         self.file.append(self.text.as_bytes())

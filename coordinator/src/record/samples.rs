@@ -41,7 +41,8 @@ pub(crate) fn steps(robots: usize, tick: u64) -> Vec<Step> {
             status: Status::Solved,
             shielded: false,
             plan: Prediction::roll_out(position, start + Position::new(5.0, 0.5), 0.2, &[input; 3]),
-            solve_ns: 1_000,
+            solve_ns: 400,
+            step_ns: 1_000,
         }
     };
     (0..robots).map(step).collect()
@@ -49,6 +50,11 @@ pub(crate) fn steps(robots: usize, tick: u64) -> Vec<Step> {
 
 /// A real run of a team in this process, recorded in `folder`, with horizons from `random:3`.
 pub(crate) fn record_run(folder: &std::path::Path, scenario: &str, params: &shared::params::Params) {
+    record_ticks(folder, scenario, params, 120);
+}
+
+/// The same, stopped after `max_ticks` ticks, which may be none.
+pub(crate) fn record_ticks(folder: &std::path::Path, scenario: &str, params: &shared::params::Params, max_ticks: u64) {
     use crate::record::about::{Machine, Versions};
     use crate::record::{About, RunFolder};
     use std::time::Duration;
@@ -70,7 +76,8 @@ pub(crate) fn record_run(folder: &std::path::Path, scenario: &str, params: &shar
     let folder = RunFolder::at(folder).unwrap();
     let mut session = crate::session::Session::start(folder, &scenario, params, about).unwrap();
     let horizon = |robot, tick| Horizon::random(3, robot, tick);
-    crate::in_process::run_team(&scenario, params, horizon, |tick, steps| {
+    let driven = Scenario { max_ticks, ..scenario.clone() };
+    crate::in_process::run_team(&driven, params, horizon, |tick, steps| {
         session.tick(tick, steps, Duration::from_micros(5)).map(|_| ())
     })
     .unwrap();

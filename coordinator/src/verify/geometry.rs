@@ -5,13 +5,26 @@ use shared::params::Params;
 use shared::scenario::Scenario;
 use std::collections::BTreeSet;
 
+/// A separation that fell below what its pair had to keep.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Loss {
+    pub(super) tick: usize,
+    pub(super) robot: usize,
+    /// Number of what was near: robots first, then obstacles.
+    pub(super) hazard: usize,
+    /// m, as [`Course::min_separation`].
+    pub(super) separation: f64,
+    /// What the pair had to keep, m.
+    pub(super) kept: f64,
+}
+
 /// What a trajectory shows.
 #[derive(Clone, Debug)]
 pub(super) struct Course {
     /// Smallest separation of the run, m, radii beyond min_separation / 2 taken off; infinite alone.
     pub(super) min_separation: f64,
-    /// Where it was: tick, robot, and the number of what was near (robots first, then obstacles).
-    pub(super) nearest: (usize, usize, usize),
+    /// The first loss of separation, see [`Course::follow`].
+    pub(super) loss: Option<Loss>,
     /// Ticks in which someone was nearer than min_separation (by more than rounding).
     pub(super) ticks_below: u64,
     /// Pairs that collided at any time.
@@ -24,6 +37,10 @@ pub(super) struct Course {
 
 impl Course {
     /// Follows everybody through the run.
+    ///
+    /// A pair may not come nearer than `cell.separation`, and while it is still nearer than that (a close
+    /// start) not nearer than it was at any sample before. Where positions are measured with noise this is
+    /// asked of the samples only, because between them the proof says nothing.
     pub(super) fn follow(table: &Table, scenario: &Scenario, params: &Params) -> Self {
         let robots = scenario.robots.len();
         let limit = params.model.min_separation;
@@ -31,7 +48,7 @@ impl Course {
         let extra = |radius: Option<f64>| radius.map_or(0.0, |radius| radius - half);
         let mut course = Self {
             min_separation: f64::INFINITY,
-            nearest: (0, 0, 0),
+            loss: None,
             ticks_below: 0,
             pairs_collided: 0,
             path: vec![0.0; robots],
@@ -39,17 +56,28 @@ impl Course {
         };
         // Hazards are counted robots first, then obstacles.
         let mut collided = BTreeSet::new();
-        for tick in 0..table.ticks.len() {
+        let hazards = robots + scenario.obstacles.len();
+        let mut kept = vec![f64::NEG_INFINITY; robots * hazards];
+        let at_samples = params.disturbance.noise > 0.0;
+        // A run without a whole tick has its start: everybody stands there.
+        for tick in 0..table.ticks.len().max(1) {
             let mut least = f64::INFINITY;
-            let mut note = |near: f64, robot: usize, hazard: usize| {
+            let mut note = |from: [f64; 2], to: [f64; 2], extra: f64, robot: usize, hazard: usize| {
+                let near = nearest(from, to) - extra;
                 least = least.min(near);
+                let (before, after) = (from[0].hypot(from[1]) - extra, to[0].hypot(to[1]) - extra);
+                let kept = &mut kept[robot * hazards + hazard];
+                *kept = kept.max(before.min(params.cell.separation));
+                let separation = if at_samples { after } else { near };
+                // Under noise a pair that is still nearer is pushed in a direction that is not quite right.
+                let asked = !at_samples || *kept >= params.cell.separation;
+                if asked && separation < *kept - super::TOUCH && course.loss.is_none() {
+                    course.loss = Some(Loss { tick, robot, hazard, separation, kept: *kept });
+                }
                 if near < params.episode.collision_factor * limit {
                     collided.insert((robot, hazard));
                 }
-                if near < course.min_separation {
-                    course.min_separation = near;
-                    course.nearest = (tick, robot, hazard);
-                }
+                course.min_separation = course.min_separation.min(near);
             };
             for i in 0..robots {
                 let (from, to) = (table.position(tick, i), table.position(tick + 1, i));
@@ -57,16 +85,15 @@ impl Course {
                 let own = extra(scenario.robots[i].radius);
                 for j in i + 1..robots {
                     let (other_from, other_to) = (table.position(tick, j), table.position(tick + 1, j));
-                    let near = nearest(minus(from, other_from), minus(to, other_to));
-                    note(near - own - extra(scenario.robots[j].radius), i, j);
+                    let both = own + extra(scenario.robots[j].radius);
+                    note(minus(from, other_from), minus(to, other_to), both, i, j);
                 }
                 for (l, obstacle) in scenario.obstacles.iter().enumerate() {
                     let centre = [obstacle.position.x, obstacle.position.y];
-                    let near = nearest(minus(from, centre), minus(to, centre));
-                    note(near - own - extra(obstacle.radius), i, robots + l);
+                    note(minus(from, centre), minus(to, centre), own + extra(obstacle.radius), i, robots + l);
                 }
             }
-            course.ticks_below += u64::from(least < limit - super::TOUCH);
+            course.ticks_below += u64::from(tick < table.ticks.len() && least < limit - super::TOUCH);
         }
         course.pairs_collided = collided.len();
         course.distances = (0..robots)

@@ -114,9 +114,12 @@ pub struct Report {
     pub arrived: usize,
     /// Robots.
     pub robots: usize,
+    /// There is no summary.json: the run was cut, and its whole ticks alone were checked.
+    pub cut: bool,
 }
 
-/// Checks the run in `folder`.
+/// Checks the run in `folder`. Of a run that was killed, and so has no summary.json, the whole ticks in
+/// trajectory.csv are checked.
 ///
 /// # Errors
 /// A file of the run cannot be read. Whatever is wrong *in* the trajectory is a finding.
@@ -130,34 +133,46 @@ pub fn verify(folder: &Path) -> Result<Report, VerifyError> {
         .map_err(|error| malformed("scenario.toml", error.to_string()))?;
     let params = Params::from_toml(&read("params.toml")?, "params.toml")
         .map_err(|error| malformed("params.toml", error.to_string()))?;
-    let summary =
-        serde_json::from_str(&read("summary.json")?).map_err(|error| malformed("summary.json", error.to_string()))?;
-    Ok(check(&read("trajectory.csv")?, &read("horizons.csv")?, &scenario, &params, &summary))
+    let summary = match read("summary.json") {
+        Ok(text) => Some(serde_json::from_str(&text).map_err(|error| malformed("summary.json", error.to_string()))?),
+        Err(VerifyError::Unreadable { source, .. }) if source.kind() == std::io::ErrorKind::NotFound => None,
+        Err(error) => return Err(error),
+    };
+    Ok(check(&read("trajectory.csv")?, &read("horizons.csv")?, &scenario, &params, summary.as_ref()))
 }
 
-/// Checks a record that was read already.
-fn check(trajectory: &str, horizons: &str, scenario: &Scenario, params: &Params, summary: &Value) -> Report {
-    let robots = scenario.robots.len();
-    let table = match table::read(trajectory, robots) {
+/// Checks a record that was read already; `summary`: none when the run was cut.
+fn check(trajectory: &str, horizons: &str, scenario: &Scenario, params: &Params, summary: Option<&Value>) -> Report {
+    let (robots, cut) = (scenario.robots.len(), summary.is_none());
+    let read = if cut {
+        let starts: Vec<_> = scenario.robots.iter().map(|robot| [robot.start.x, robot.start.y]).collect();
+        table::read_cut(trajectory, &starts, params.model.sample_time)
+    } else {
+        table::read(trajectory, robots)
+    };
+    let table = match read {
         Ok(table) => table,
-        Err(finding) => return Report { findings: vec![finding], robots, ..Report::default() },
+        Err(finding) => return Report { findings: vec![finding], robots, cut, ..Report::default() },
     };
     let course = Course::follow(&table, scenario, params);
     let findings = [
         starts(&table, scenario),
         bounds(&table, params),
         motion(&table, params),
-        chosen_horizons(&table, horizons),
+        chosen_horizons(&table, horizons, cut),
         guarantee(&course, scenario, params),
     ];
     let mut findings: Vec<Finding> = findings.into_iter().flatten().collect();
-    findings.extend(claims(&table, &course, params, summary));
+    if let Some(summary) = summary {
+        findings.extend(claims(&table, &course, params, summary));
+    }
     Report {
         findings,
         ticks: table.ticks.len(),
         min_separation: course.min_separation,
         arrived: course.distances.iter().filter(|&&left| left < params.episode.arrival_tolerance).count(),
         robots,
+        cut,
     }
 }
 
@@ -195,11 +210,16 @@ fn motion(table: &Table, params: &Params) -> Option<Finding> {
     })
 }
 
-/// The horizons are those of `horizons.csv`.
-fn chosen_horizons(table: &Table, horizons: &str) -> Option<Finding> {
-    let mut lines = horizons.lines().skip(1);
+/// The horizons are those of `horizons.csv`. The record of a tick begins with trajectory.csv: in a run that
+/// was `cut` between the two files the last line here is missing or begun.
+fn chosen_horizons(table: &Table, horizons: &str, cut: bool) -> Option<Finding> {
+    let mut lines = horizons.split_inclusive('\n').skip(1);
     for (k, rows) in table.ticks.iter().enumerate() {
         let line = lines.next().unwrap_or_default();
+        if cut && k + 1 == table.ticks.len() && !line.ends_with('\n') {
+            return None;
+        }
+        let line = line.trim_end_matches('\n');
         let own = rows.iter().fold(k.to_string(), |line, row| format!("{line},{}", row.horizon));
         if own != line {
             let robot = own.split(',').zip(line.split(',')).position(|(a, b)| a != b).unwrap_or(1).saturating_sub(1);
@@ -211,25 +231,21 @@ fn chosen_horizons(table: &Table, horizons: &str) -> Option<Finding> {
     None
 }
 
-/// With cells on, nobody comes nearer than they keep, unless the start was nearer already or positions are
-/// measured worse than the cells allow for.
+/// With cells on, nobody comes nearer than they keep, unless positions are measured worse than the cells
+/// allow for. See [`Course::follow`] for starts that were nearer already.
 fn guarantee(course: &Course, scenario: &Scenario, params: &Params) -> Option<Finding> {
-    let kept = params.model.min_separation.min(params.cell.separation);
-    let measured_well = params.disturbance.noise <= params.cell.noise_bound;
-    let promised = params.cell.enabled && measured_well && !scenario.allow_close_start;
-    (promised && course.min_separation < kept - TOUCH).then(|| {
-        let (tick, robot, hazard) = course.nearest;
-        let what = match hazard.checked_sub(scenario.robots.len()) {
-            None => format!("separation from robot {hazard}"),
-            Some(obstacle) => format!("separation from obstacle {obstacle}"),
-        };
-        Finding::new(
-            Place::at(tick, robot),
-            &what,
-            &format!("{} m", course.min_separation),
-            &format!("at least {kept} m"),
-        )
-    })
+    let loss = course.loss.filter(|_| promised(params))?;
+    let what = match loss.hazard.checked_sub(scenario.robots.len()) {
+        None => format!("separation from robot {}", loss.hazard),
+        Some(obstacle) => format!("separation from obstacle {obstacle}"),
+    };
+    let (value, allowed) = (format!("{} m", loss.separation), format!("at least {} m", loss.kept));
+    Some(Finding::new(Place::at(loss.tick, loss.robot), &what, &value, &allowed))
+}
+
+/// Whether the parameters promise a separation at all.
+fn promised(params: &Params) -> bool {
+    params.cell.enabled && params.disturbance.noise <= params.cell.noise_bound
 }
 
 /// What the summary claims is what the trajectory shows.
@@ -246,7 +262,8 @@ fn claims(table: &Table, course: &Course, params: &Params, summary: &Value) -> V
         }
     };
     let arrived = course.distances.iter().all(|&left| left < params.episode.arrival_tolerance);
-    let success = arrived && course.pairs_collided == 0;
+    let kept = !promised(params) || course.loss.is_none();
+    let success = arrived && course.pairs_collided == 0 && kept;
     compare("success", &summary["success"], success.into());
     compare("ticks", &summary["ticks"], table.ticks.len().into());
     compare("path_cost", &summary["path_cost"], course.path.iter().sum::<f64>().into());

@@ -30,6 +30,29 @@ const STATUSES: [&str; 5] = ["solved", "relaxed", "held", "shifted", "stopped"];
 /// Reads `text` for a team of `robots`; the first thing that is off ends the reading, because every
 /// row after it would be off too.
 pub(super) fn read(text: &str, robots: usize) -> Result<Table, Finding> {
+    let table = read_rows(text, robots)?;
+    if table.last.len() != robots {
+        let place = Place { tick: Some(table.ticks.len() as u64), ..Place::default() };
+        let what = "number of last positions (a run that was cut has none, and no summary.json)";
+        return Err(Finding::new(place, what, &table.last.len().to_string(), &robots.to_string()));
+    }
+    Ok(table)
+}
+
+/// Reads the whole ticks of a record whose end may be missing. Without last positions they are those
+/// that the model gives after the last whole tick (the step lasts `sample_time` s), or the `starts`.
+pub(super) fn read_cut(text: &str, starts: &[[f64; 2]], sample_time: f64) -> Result<Table, Finding> {
+    let whole = text.rfind('\n').map_or(0, |at| at + 1);
+    let mut table = read_rows(&text[..whole], starts.len())?;
+    if table.last.len() < starts.len() {
+        table.ticks.pop_if(|rows| rows.len() < starts.len());
+        let after = |row: &Row| [row.x + row.ux * sample_time, row.y + row.uy * sample_time];
+        table.last = table.ticks.last().map_or(starts.to_vec(), |rows| rows.iter().map(after).collect());
+    }
+    Ok(table)
+}
+
+fn read_rows(text: &str, robots: usize) -> Result<Table, Finding> {
     let mut lines = text.split_terminator('\n').enumerate();
     let header = lines.next().map_or("", |(_, line)| line);
     if header != COLUMNS.join(",") {
@@ -75,16 +98,6 @@ pub(super) fn read(text: &str, robots: usize) -> Result<Table, Finding> {
         if let Some(tick) = table.ticks.last_mut() {
             tick.push(row);
         }
-    }
-    let place = Place { tick: Some(table.ticks.len() as u64), ..Place::default() };
-    if table.last.len() != robots {
-        let found = table.last.len().to_string();
-        return Err(Finding::new(
-            place,
-            "number of last positions (a run that was cut has none)",
-            &found,
-            &robots.to_string(),
-        ));
     }
     Ok(table)
 }

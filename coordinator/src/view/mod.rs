@@ -7,6 +7,7 @@ mod browser;
 mod frame;
 mod terminal;
 
+use crate::stdout;
 use agent::vodca::memory::ConflictMemory;
 use browser::BrowserView;
 pub use frame::Frame;
@@ -51,6 +52,9 @@ pub enum ViewError {
         /// What the system said.
         reason: String,
     },
+    /// Where to look could not be said.
+    #[error(transparent)]
+    Print(#[from] stdout::PrintError),
 }
 
 /// The views of one run.
@@ -75,7 +79,7 @@ impl Views {
             None => None,
         };
         if let Some(view) = &browser {
-            println!("{:<16}{}", "live view", view.address());
+            stdout::line(format_args!("{:<16}{}", "live view", view.address()))?;
         }
         let terminal = match wanted.terminal {
             true if !io::stdout().is_terminal() => return Err(ViewError::NoTerminal),

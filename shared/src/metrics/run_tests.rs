@@ -23,6 +23,7 @@ fn step(from: Position, to: Position) -> Step {
         shielded: false,
         plan: Prediction::from_states(&[from, to], to),
         solve_ns: 0,
+        step_ns: 0,
     }
 }
 

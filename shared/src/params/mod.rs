@@ -267,7 +267,8 @@ pub struct Cell {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct HorizonParams {
-    /// Every horizon moves by a seeded draw from -jitter..=jitter (breaks limit cycles); 0 is off.
+    /// Every horizon moves by a seeded draw from -jitter..=jitter (breaks limit cycles), those of a
+    /// script excepted; 0 is off.
     pub jitter: u64,
 }
 

@@ -1,4 +1,7 @@
 //! Profile, overlaid by a scenario's `[params]`, overlaid by `--set KEY=VALUE`.
+//!
+//! `cell.separation` follows `model.min_separation` where only that one was given: who asks for more room
+//! means the guarantee too.
 
 use super::table::{self, Refusal};
 use super::{Params, Profile};
@@ -57,32 +60,36 @@ pub enum OverlayError {
 
 impl Params {
     /// The effective parameters of a run: `profile`, then `scenario_params` (a scenario's `[params]`
-    /// table, `scenario` its name for errors), then each `KEY=VALUE` of `sets` in order. Checked.
+    /// table, `scenario` its name or file for errors), then each `KEY=VALUE` of `sets` in order. Checked.
     pub fn resolve(
         profile: Profile,
         scenario: &str,
         scenario_params: &Table,
         sets: &[String],
     ) -> Result<Self, OverlayError> {
-        let mut tree = table::tree(&Params::of(profile));
+        let mut overlay = Overlay { tree: table::tree(&Params::of(profile)), given: Vec::new() };
         let origin = format!("scenario {scenario} [params]");
         for (section, fields) in scenario_params {
-            apply_section(&mut tree, &origin, section, fields)?;
+            overlay.apply_section(&origin, section, fields)?;
         }
         for set in sets {
             let origin = format!("--set {set}");
             let (key, value) = set.split_once('=').ok_or_else(|| OverlayError::NoValue(set.clone()))?;
             let value = parse_value(value.trim());
             match key.trim().split_once('.') {
-                Some((section, field)) => apply_field(&mut tree, &origin, section, field, &value)?,
-                None => apply_section(&mut tree, &origin, key.trim(), &value)?,
+                Some((section, field)) => overlay.apply_field(&origin, section, field, &value)?,
+                None => overlay.apply_section(&origin, key.trim(), &value)?,
             }
         }
         let refused = |refusal| OverlayError::Refused { origin: "the parameters together".into(), refusal };
         // Every key and type was checked against the table, whose words a test compares with the structs.
-        let params: Params = tree.try_into().map_err(|error: toml::de::Error| {
+        let mut params: Params = overlay.tree.try_into().map_err(|error: toml::de::Error| {
             refused(Refusal { key: "params", value: error.to_string(), allowed: "see PARAMETERS.md".into(), unit: "-" })
         })?;
+        let given = |key: &str| overlay.given.contains(&key);
+        if given("model.min_separation") && !given("cell.separation") {
+            params.cell.separation = params.model.min_separation;
+        }
         params.validate().map_err(refused)?;
         Ok(params)
     }
@@ -93,33 +100,44 @@ fn parse_value(text: &str) -> Value {
     text.parse().unwrap_or_else(|_| Value::String(text.into()))
 }
 
-fn apply_section(tree: &mut Table, origin: &str, section: &str, fields: &Value) -> Result<(), OverlayError> {
-    let names = table::fields(section);
-    if names.is_empty() {
-        return Err(unknown_section(origin, section));
-    }
-    let fields = fields.as_table().ok_or_else(|| OverlayError::NotASection {
-        origin: origin.into(),
-        section: section.into(),
-        accepted: names.join(", "),
-    })?;
-    fields.iter().try_for_each(|(field, value)| apply_field(tree, origin, section, field, value))
+/// Values under construction.
+struct Overlay {
+    /// The parameters as two levels of tables.
+    tree: Table,
+    /// Keys that a scenario or a `--set` gave.
+    given: Vec<&'static str>,
 }
 
-fn apply_field(tree: &mut Table, origin: &str, section: &str, field: &str, value: &Value) -> Result<(), OverlayError> {
-    let slot = tree.get_mut(section).ok_or_else(|| unknown_section(origin, section))?;
-    let (Some(entry), Some(slot)) = (table::find(&format!("{section}.{field}")), slot.get_mut(field)) else {
+impl Overlay {
+    fn apply_section(&mut self, origin: &str, section: &str, fields: &Value) -> Result<(), OverlayError> {
         let names = table::fields(section);
-        return Err(OverlayError::UnknownField {
+        if names.is_empty() {
+            return Err(unknown_section(origin, section));
+        }
+        let fields = fields.as_table().ok_or_else(|| OverlayError::NotASection {
             origin: origin.into(),
             section: section.into(),
-            field: field.into(),
             accepted: names.join(", "),
-            hint: suggest::hint(field, names),
-        });
-    };
-    *slot = entry.check(value).map_err(|refusal| OverlayError::Refused { origin: origin.into(), refusal })?;
-    Ok(())
+        })?;
+        fields.iter().try_for_each(|(field, value)| self.apply_field(origin, section, field, value))
+    }
+
+    fn apply_field(&mut self, origin: &str, section: &str, field: &str, value: &Value) -> Result<(), OverlayError> {
+        let slot = self.tree.get_mut(section).ok_or_else(|| unknown_section(origin, section))?;
+        let (Some(entry), Some(slot)) = (table::find(&format!("{section}.{field}")), slot.get_mut(field)) else {
+            let names = table::fields(section);
+            return Err(OverlayError::UnknownField {
+                origin: origin.into(),
+                section: section.into(),
+                field: field.into(),
+                accepted: names.join(", "),
+                hint: suggest::hint(field, names),
+            });
+        };
+        *slot = entry.check(value).map_err(|refusal| OverlayError::Refused { origin: origin.into(), refusal })?;
+        self.given.push(entry.key);
+        Ok(())
+    }
 }
 
 /// A bare field name is the likeliest mistake: it is answered with its full key.
@@ -147,6 +165,21 @@ mod tests {
         assert_eq!((params.vodca.turn, params.aim.angle), (0.3, 0.1));
         assert_eq!(params.vodca.rows, RowChoice::Each);
         assert_eq!(params.mpc.reference, Reference::SetPoint, "what nobody set stays as in the profile");
+    }
+
+    #[test]
+    fn the_guaranteed_separation_follows_the_wanted_one_unless_it_is_given() {
+        let separation = |params: &str, sets: &[&str]| resolve(params, sets).unwrap().cell.separation;
+        assert_eq!(separation("", &["vodca.turn=0.3"]), 1.5, "nobody touched either");
+        assert_eq!(separation("", &["model.min_separation=2.5"]), 2.5);
+        assert_eq!(separation("model.min_separation = 2", &[]), 2.0);
+        assert_eq!(separation("", &["model={min_separation=1}"]), 1.0);
+        assert_eq!(separation("", &["cell.separation=3", "model.min_separation=2.5"]), 3.0);
+        assert_eq!(
+            separation("cell.separation = 1.5", &["model.min_separation=2.5"]),
+            1.5,
+            "warned about, not changed"
+        );
     }
 
     #[test]

@@ -76,11 +76,21 @@ pub enum ScenarioError {
     /// A layout that cannot be run.
     #[error("scenario {scenario}: {problem}")]
     Invalid {
-        /// Its name.
+        /// Its file as it was given; its name where it comes from none.
         scenario: String,
         /// What is wrong and what to do.
         problem: Problem,
     },
+}
+
+impl ScenarioError {
+    /// The same error, with `place` (a file) in place of the name of a scenario that cannot be run.
+    pub(super) fn at(self, place: &str) -> Self {
+        match self {
+            Self::Invalid { problem, .. } => Self::Invalid { scenario: place.into(), problem },
+            other => other,
+        }
+    }
 }
 
 /// What is wrong with a layout and what to do.

@@ -128,7 +128,7 @@ impl Scenario {
             allow_close_start: parsed.allow_close_start,
             params: parsed.params,
         };
-        scenario.validate()?;
+        scenario.validate().map_err(|error| error.at(file))?;
         Ok(scenario)
     }
 
@@ -201,6 +201,12 @@ mod tests {
         let three = message(&GOOD.replace("[0, 0.5]", "[0, 0.5, 1]"));
         assert!(three.contains("line 3") && three.contains("expected [x, y] in metres, found 3 numbers"), "{three}");
         assert!(message(&GOOD.replace("version = 1", "")).contains("missing field `version`"));
+    }
+
+    #[test]
+    fn layouts_that_cannot_be_run_name_their_file_whatever_they_are_called() {
+        let text = GOOD.replace("version = 1", "version = 1\nname = \"cross\"\nmax_ticks = 0");
+        assert_eq!(message(&text), "scenario mine.toml: max_ticks = 0 is not allowed; allowed: 1..=1000000");
     }
 
     #[test]

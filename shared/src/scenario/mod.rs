@@ -91,6 +91,11 @@ fn extra_radius(radius: Option<f64>, min_separation: f64) -> f64 {
     radius.map_or(0.0, |radius| radius - min_separation / 2.0)
 }
 
+/// Whether what the user wrote means a file rather than a name.
+fn is_file(spec: &str) -> bool {
+    spec.contains('/') || spec.ends_with(".toml")
+}
+
 impl Scenario {
     /// Radius of `robot` beyond min_separation / 2, m; 0 unless the scenario gives a radius.
     pub fn extra_radius(&self, robot: usize, min_separation: f64) -> f64 {
@@ -120,7 +125,7 @@ impl Scenario {
     pub fn resolve(spec: Option<&str>, robots: Option<usize>) -> Result<Self, ScenarioError> {
         let fallback = robots.map(Self::default_for);
         let spec = spec.or(fallback.as_deref()).ok_or(ScenarioError::NothingChosen)?;
-        let scenario = if spec.contains('/') || spec.ends_with(".toml") {
+        let scenario = if is_file(spec) {
             Self::load(Path::new(spec))?
         } else if let Some(text) = builtin::text(spec) {
             Self::from_toml(text, spec, &format!("scenarios/{spec}.toml"))?

@@ -1,6 +1,6 @@
 //! Scenario and parameters of a run, from what the user typed, checked together.
 
-use super::{Scenario, ScenarioError};
+use super::{Scenario, ScenarioError, is_file};
 use crate::params::{OverlayError, Params, Profile};
 
 /// Why a run cannot be set up.
@@ -23,14 +23,32 @@ pub fn set_up(
     sets: &[String],
 ) -> Result<(Scenario, Params), SetupError> {
     let scenario = Scenario::resolve(spec, robots)?;
-    let params = Params::resolve(profile, &scenario.name, &scenario.params, sets)?;
-    scenario.validate_distances(params.model.min_separation)?;
+    // Errors name the file that the user gave and can correct; its scenario may be called otherwise.
+    let place = spec.filter(|spec| is_file(spec)).unwrap_or(&scenario.name);
+    let params = Params::resolve(profile, place, &scenario.params, sets)?;
+    scenario.validate_distances(params.model.min_separation).map_err(|error| error.at(place))?;
     Ok((scenario, params))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn mistakes_in_a_file_name_the_file() {
+        let file = std::env::temp_dir().join(format!("vodca-setup-{}.toml", std::process::id()));
+        let path = file.to_str().unwrap();
+        let message = |text: &str| {
+            std::fs::write(&file, text).unwrap();
+            set_up(Some(path), None, Profile::Safe, &[]).unwrap_err().to_string()
+        };
+        let robot = |x: f64| format!("[[robot]]\nstart = [{x}, 0]\nset_point = [{x}, 9]\n");
+        let close = message(&format!("version = 1\nname = \"cross\"\n{}{}", robot(0.0), robot(1.0)));
+        let params = message(&format!("version = 1\n{}[params]\nvodca.rws = 1\n", robot(0.0)));
+        std::fs::remove_file(&file).unwrap();
+        assert!(close.starts_with(&format!("scenario {path}: robot-0 starts 1.0000 m from robot-1")), "{close}");
+        assert!(params.starts_with(&format!("scenario {path} [params]: section `vodca` has no")), "{params}");
+    }
 
     #[test]
     fn distances_are_checked_with_the_effective_parameters() {

@@ -20,7 +20,7 @@ struct Args {
     robot: usize,
     #[arg(long)]
     parent: Option<u32>,
-    /// ROBOT:KIND[:TICK]; kinds: panic, exit, abort, hang, spin
+    /// `ROBOT:KIND[:TICK]`; kinds: panic, exit, abort, hang, spin
     #[arg(long)]
     fault: Option<String>,
 }
@@ -55,6 +55,7 @@ impl Drive for Straight {
             shielded: false,
             plan: Prediction::from_states(&[position, self.position], self.set_point),
             solve_ns: 0,
+            step_ns: 0,
         }
     }
 }
