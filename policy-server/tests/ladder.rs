@@ -1,4 +1,5 @@
 //! Promise: a bad model never acts, and each kind of bad has its own clear error.
+#![allow(clippy::unwrap_used)] // a panic is how a test fails
 
 mod common;
 

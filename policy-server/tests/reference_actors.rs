@@ -2,6 +2,7 @@
 //! and, where the library is present, on ONNX Runtime.
 //!
 //! `tests/export_reference_actors.py` wrote the actors; it says with what.
+#![allow(clippy::unwrap_used)] // a panic is how a test fails
 
 mod common;
 

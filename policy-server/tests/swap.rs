@@ -1,5 +1,6 @@
 //! Promise: a new version takes over between two ticks, a bad one never does, and the one before is
 //! kept for a rollback.
+#![allow(clippy::unwrap_used)] // a panic is how a test fails
 
 mod common;
 

@@ -1,5 +1,6 @@
 //! Runs with a policy, one file per promise. Apart from the others because only these need the policy
 //! server, the heaviest build of the project.
+#![allow(clippy::unwrap_used)] // a panic is how a test fails
 
 mod killed;
 mod swap;
