@@ -93,7 +93,7 @@ impl Shown {
 fn draw(area: &mut ratatui::Frame<'_>, frame: &Frame, shown: &Shown) {
     let [head, body] = Layout::vertical([Constraint::Length(3), Constraint::Min(1)]).areas(area.area());
     area.render_widget(Paragraph::new(heading(frame, shown)), head);
-    let header = Row::new(["robot", "distance m", "horizon", "rows", "solve us", "level", "status"]).bold();
+    let header = Row::new(["robot", "distance m", "horizon", "rows", "QP us", "level", "status"]).bold();
     let rows = frame.steps.iter().zip(&shown.set_points).enumerate().map(|(robot, (step, set_point))| {
         Row::new([
             robot.to_string(),
@@ -145,9 +145,9 @@ mod tests {
                 "sample  horizons fixed:3",
                 "tick 5 of 100  arrived 1/2  tick time 0.42 ms",
                 "min separation 1.750 m (r_min 1.5 m)  fallbacks 3",
-                "robot  distance m  horizon  rows  solve us   level        status",
-                "0      3.51        3        0     1.0        closed_form  solved",
-                "1      3.51        3        0     1.0        closed_form  solved",
+                "robot  distance m  horizon  rows  QP us      level        status",
+                "0      3.51        3        0     0.4        closed_form  solved",
+                "1      3.51        3        0     0.4        closed_form  solved",
             ]
         );
     }
