@@ -1,6 +1,6 @@
 //! Tries a model in a process of its own: one that crashes, hangs or eats memory takes nobody along.
 //!
-//! The child reads one line of JSON ([`Trial`]) and then the model's bytes from its standard input and
+//! The child reads one line of JSON (`Trial`) and then the model's bytes from its standard input and
 //! answers with one line of JSON. It limits its own memory and processor time first.
 
 use super::{Candidate, CheckError, Limits, ReferenceSet, Report, TryError, look, try_out};
@@ -109,7 +109,7 @@ fn describe(status: ExitStatus) -> String {
     }
 }
 
-/// The trial process: reads a [`Trial`] and a model, answers with the report or the error.
+/// The trial process: reads a `Trial` and a model, answers with the report or the error.
 pub fn run_trial_process() -> anyhow::Result<()> {
     set_parent_process_death_signal(Some(Signal::KILL))?;
     let mut stdin = io::stdin().lock();

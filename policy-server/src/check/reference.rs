@@ -12,7 +12,7 @@ use shared::policy::contract::Contract;
 pub struct ReferenceSet {
     /// How far `mean` and `log_std` may differ, absolute.
     pub tolerance: f64,
-    /// At most [`MAX_CASES`].
+    /// At most `MAX_CASES`.
     pub cases: Vec<Case>,
 }
 
