@@ -18,7 +18,7 @@ pub enum OnnxError {
     /// A protobuf message without a graph.
     #[error("not an ONNX file: it holds no graph; export the actor again")]
     NoGraph,
-    /// Over [`MAX_ENTRIES`].
+    /// Over `MAX_ENTRIES`.
     #[error("the model has more than {most} {what}; an actor has a few dozen")]
     TooMany {
         /// What there is too much of.
