@@ -14,6 +14,8 @@ pub mod place;
 pub mod policy;
 pub mod prediction;
 pub mod random;
+pub mod reward;
+pub mod rollout;
 pub mod scenario;
 pub mod separation;
 pub mod services;
@@ -21,6 +23,7 @@ pub mod step;
 pub mod stop;
 pub mod suggest;
 pub mod team;
+pub mod tensor_file;
 
 /// A point in the plane, metres, world frame.
 pub type Position = nalgebra::Vector2<f64>;

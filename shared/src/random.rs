@@ -28,6 +28,8 @@ pub enum Use {
     Push = 9,
     /// Resamples of a bootstrap.
     Resample = 10,
+    /// Seeds of the episodes of a session.
+    Episode = 11,
 }
 
 /// The generator of one `(seed, use, a, b)` coordinate, positioned at its first draw.
@@ -38,6 +40,11 @@ pub fn stream(seed: u64, purpose: Use, a: u64, b: u64) -> ChaCha8Rng {
     key[16..24].copy_from_slice(&a.to_le_bytes());
     key[24..].copy_from_slice(&b.to_le_bytes());
     ChaCha8Rng::from_seed(key)
+}
+
+/// Seed of episode `episode` of a session with `seed`; episode 0 has the session's own.
+pub fn episode_seed(seed: u64, episode: u64) -> u64 {
+    if episode == 0 { seed } else { stream(seed, Use::Episode, episode, 0).next_u64() }
 }
 
 /// A draw from `0..bound`, without bias (rejection).
