@@ -10,10 +10,11 @@ use shared::horizon::Horizon;
 use shared::horizon_source::HorizonSourceError;
 use shared::messages::{Report, Stamps, kind};
 use shared::os;
+use shared::scenario::ScenarioError;
 use shared::services::ServiceError;
 use shared::step::Step;
 use shared::stop::StopFlag;
-use shared::team::{Setup, TeamError};
+use shared::team::{FIRST_EPOCH, Setup, TeamError};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -26,6 +27,9 @@ pub enum RunError {
     /// The run's folder.
     #[error(transparent)]
     Team(#[from] TeamError),
+    /// The layout of an episode.
+    #[error(transparent)]
+    Scenario(#[from] ScenarioError),
     /// Where horizons come from.
     #[error(transparent)]
     Horizons(#[from] HorizonSourceError),
@@ -85,12 +89,9 @@ impl Drive for Robot {
     }
 }
 
-/// Runs one robot until the coordinator or a signal ends it; `build` makes what lives in it.
-pub fn run<D: Drive>(
-    launch: Launch<'_>,
-    stop: &StopFlag,
-    build: impl FnOnce(&Setup, usize) -> D,
-) -> Result<(), RunError> {
+/// Runs one robot until the coordinator or a signal ends it; `build` makes what lives in it, anew for
+/// every episode.
+pub fn run<D: Drive>(launch: Launch<'_>, stop: &StopFlag, build: impl Fn(&Setup, usize) -> D) -> Result<(), RunError> {
     if let Some(parent) = launch.parent
         && !os::die_with_parent(parent)
     {
@@ -102,39 +103,59 @@ pub fn run<D: Drive>(
     if robot >= team.robots {
         return Err(RunError::NoSuchRobot { robot, last: team.robots - 1 });
     }
-    let horizons = Horizons::new(&setup)?;
-    let hearing = Hearing::new(robot, &setup.scenario, &setup.params.disturbance, team.seed);
-    let drive = build(&setup, robot);
-    let mut exchange = exchange::open(team.exchange, &team.place, team.robots, robot, team.epoch)?;
-    exchange.publish(Report::presence(team.epoch, robot, kind::READY))?;
-    serve(&setup, robot, exchange.as_mut(), &horizons, hearing, drive, stop)
+    let first = Episode::new(&setup, FIRST_EPOCH, robot, &build)?;
+    let mut exchange = exchange::open(team.exchange, &team.place, team.robots, robot, FIRST_EPOCH)?;
+    exchange.publish(Report::presence(FIRST_EPOCH, robot, kind::READY))?;
+    serve(&setup, robot, exchange.as_mut(), first, &build, stop)
+}
+
+/// What a robot begins anew with every episode.
+struct Episode<D> {
+    epoch: u64,
+    horizons: Horizons,
+    hearing: Hearing,
+    drive: D,
+}
+
+impl<D: Drive> Episode<D> {
+    fn new(setup: &Setup, epoch: u64, robot: usize, build: &impl Fn(&Setup, usize) -> D) -> Result<Self, RunError> {
+        let setup = setup.of_episode(epoch)?;
+        Ok(Self {
+            epoch,
+            horizons: Horizons::new(&setup)?,
+            hearing: Hearing::new(robot, &setup.scenario, &setup.params.disturbance, setup.team.seed),
+            drive: build(&setup, robot),
+        })
+    }
 }
 
 /// Takes part in every tick until told to stop. [`Robot::step`] allocates nothing in a steady tick
 /// (`tests/allocations.rs` counts, for a team in one process); what iceoryx2 does with messages is its own.
-fn serve(
+fn serve<D: Drive>(
     setup: &Setup,
     robot: usize,
     exchange: &mut dyn Exchange,
-    horizons: &Horizons,
-    mut hearing: Hearing,
-    mut drive: impl Drive,
+    mut now: Episode<D>,
+    build: &impl Fn(&Setup, usize) -> D,
     stop: &StopFlag,
 ) -> Result<(), RunError> {
-    let epoch = setup.team.epoch;
     let (mut heard_at, mut last) = (Instant::now(), None);
     while !stop.is_set() {
-        let order = exchange.next_order(LOOK_AROUND, &mut |sender, tick, plan| hearing.hear(tick, sender, plan))?;
+        let order = exchange.next_order(LOOK_AROUND, &mut |sender, tick, plan| now.hearing.hear(tick, sender, plan))?;
         match order {
             Some(Order::Stop) => break,
-            Some(Order::Meet) => exchange.publish(Report::presence(epoch, robot, kind::MET))?,
+            Some(Order::Meet) => exchange.publish(Report::presence(now.epoch, robot, kind::MET))?,
+            Some(Order::Episode { epoch }) => {
+                now = Episode::new(setup, epoch, robot, build)?;
+                exchange.publish(Report::presence(epoch, robot, kind::MET))?;
+            }
             Some(Order::Tick { tick, horizon, announced, woken }) => {
                 let read = os::now_ns();
-                let horizon = horizons.at(horizon, robot, tick).ok_or(RunError::NoHorizon { tick })?;
-                let step = drive.step(tick, horizon, &hearing);
-                hearing.hear(tick, robot, &step.plan); // read from the next tick on, like everybody's
+                let horizon = now.horizons.at(horizon, robot, tick).ok_or(RunError::NoHorizon { tick })?;
+                let step = now.drive.step(tick, horizon, &now.hearing);
+                now.hearing.hear(tick, robot, &step.plan); // read from the next tick on, like everybody's
                 let planned = os::now_ns();
-                let mut report = Report::step(epoch, tick, robot, &step);
+                let mut report = Report::step(now.epoch, tick, robot, &step);
                 report.plan.stamp = os::now_ns();
                 report.stamps = Stamps { announced, woken, read, planned, reported: report.plan.stamp };
                 exchange.publish(report)?;

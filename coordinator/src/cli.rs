@@ -1,6 +1,6 @@
 //! The command line: one subcommand per file of `commands/`.
 
-use crate::commands::{compare, figures, golden, params, replay, report, run, scenario, sweep, verify};
+use crate::commands::{compare, figures, golden, params, replay, report, rollout, run, scenario, sweep, verify};
 use crate::exit::Ending;
 use clap::{Parser, Subcommand};
 
@@ -37,6 +37,8 @@ enum Command {
     Replay(replay::Args),
     /// Check a recorded run from its CSV alone: separation, arrival, input bounds, model
     Verify(verify::Args),
+    /// Play episode after episode and record what a learner needs
+    Rollout(rollout::Args),
     /// Write recorded runs as one page for a browser: replay, charts, figures
     Report(report::Args),
     /// Run the paper's tasks anew and draw its figures as SVG
@@ -57,6 +59,7 @@ impl Cli {
             Command::Golden(args) => golden::run(args),
             Command::Replay(args) => replay::run(args),
             Command::Verify(args) => verify::run(args),
+            Command::Rollout(args) => rollout::run(args),
             Command::Report(args) => report::run(args),
             Command::Figures(args) => figures::run(args),
             Command::Scenario(args) => scenario::run(args),

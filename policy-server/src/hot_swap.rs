@@ -63,6 +63,9 @@ pub enum Event {
     },
 }
 
+/// What a model chose for a robot: its action in [-1, 1] and the horizon made of it.
+pub type Chosen = (f64, Horizon);
+
 /// The models that act. Lives in the serving thread.
 pub struct HotSwap {
     current: Option<Box<Loaded>>,
@@ -137,9 +140,9 @@ impl HotSwap {
 
     /// Chooses the horizon of every robot; `false` when there is no model that can. A model that
     /// fails makes room for the previous one at once, and that one answers this very tick.
-    pub fn choose(&mut self, tick: u64, positions: &[Position], choice: Choice, horizons: &mut Vec<Horizon>) -> bool {
+    pub fn choose(&mut self, tick: u64, positions: &[Position], choice: Choice, chosen: &mut Vec<Chosen>) -> bool {
         while let Some(mut acting) = self.current.take() {
-            match self.ask(&mut acting, tick, positions, choice, horizons) {
+            match self.ask(&mut acting, tick, positions, choice, chosen) {
                 Ok(()) => {
                     self.current = Some(acting);
                     return true;
@@ -163,16 +166,16 @@ impl HotSwap {
         tick: u64,
         positions: &[Position],
         choice: Choice,
-        horizons: &mut Vec<Horizon>,
+        chosen: &mut Vec<Chosen>,
     ) -> Result<(), String> {
         acting.actor.contract().normalise(positions, &mut self.input);
         acting.actor.infer(&self.input, &mut self.answer).map_err(|error| error.to_string())?;
-        horizons.clear();
+        chosen.clear();
         for robot in 0..positions.len() {
-            let Some((_, horizon)) = choose(acting.actor.contract(), &self.answer, choice, robot, tick) else {
+            let Some(one) = choose(acting.actor.contract(), &self.answer, choice, robot, tick) else {
                 return Err(format!("its answer for robot {robot} is not a finite number"));
             };
-            horizons.push(horizon);
+            chosen.push(one);
         }
         Ok(())
     }

@@ -2,20 +2,20 @@
 
 use crate::actor::{BackEnd, Runtime};
 use crate::check::{Limits, Prober, look, try_out};
-use crate::hot_swap::{HotSwap, Loaded};
+use crate::hot_swap::{Chosen, HotSwap, Loaded};
 use crate::loader::{Loader, Watched, import};
 use crate::sample::Choice;
 use anyhow::{Context, bail};
 use shared::Position;
-use shared::horizon::Horizon;
 use shared::messages::{Observation, PolicyAnswer, answer};
 use shared::os;
 use shared::policy::folder::{PolicyFolder, Version, resolve};
 use shared::policy::run_folder;
 use shared::policy::settings::PolicySettings;
+use shared::random;
 use shared::services::PolicyPort;
 use shared::stop::StopFlag;
-use shared::team::{Setup, TeamFile};
+use shared::team::{FIRST_EPOCH, Setup, TeamFile};
 use std::path::{Path, PathBuf};
 use std::sync::mpsc;
 use std::time::Duration;
@@ -74,7 +74,7 @@ pub fn run(args: &ServeArgs) -> anyhow::Result<()> {
         team,
         choice,
         positions: Vec::new(),
-        horizons: Vec::new(),
+        chosen: Vec::new(),
     };
     let served = server.serve(&stop);
     drop(server); // Hangs up: the loader writes down what is left and ends.
@@ -99,13 +99,14 @@ struct Server {
     team: TeamFile,
     choice: Choice,
     positions: Vec<Position>,
-    horizons: Vec<Horizon>,
+    /// Action and horizon by robot.
+    chosen: Vec<Chosen>,
 }
 
 impl Server {
     fn serve(&mut self, stop: &StopFlag) -> anyhow::Result<()> {
         self.swap.between_ticks(0);
-        self.port.answer(PolicyAnswer { epoch: self.team.epoch, kind: answer::HELLO, ..PolicyAnswer::EMPTY })?;
+        self.port.answer(PolicyAnswer { epoch: FIRST_EPOCH, kind: answer::HELLO, ..PolicyAnswer::EMPTY })?;
         info!("serves {} robots", self.team.robots);
         while !stop.is_set() {
             self.port.wait(LOOK_AROUND)?;
@@ -122,20 +123,27 @@ impl Server {
     fn answer(&mut self, observation: &Observation) -> anyhow::Result<()> {
         let read = os::now_ns();
         let robots = self.team.robots;
-        if observation.epoch != self.team.epoch || observation.robots != robots as u64 {
+        if observation.robots != robots as u64 {
             return Ok(());
         }
         let tick = observation.tick;
+        // Every episode has draws of its own.
+        let choice = match self.choice {
+            Choice::Mean => Choice::Mean,
+            Choice::Sample { seed } => {
+                Choice::Sample { seed: random::episode_seed(seed, self.team.episodes.number(observation.epoch)) }
+            }
+        };
         self.positions.clear();
         self.positions.extend(observation.positions[..robots].iter().map(|&position| Position::from(position)));
         self.swap.between_ticks(tick);
-        let chosen = self.swap.choose(tick, &self.positions, self.choice, &mut self.horizons);
+        let chosen = self.swap.choose(tick, &self.positions, choice, &mut self.chosen);
         let kind = if chosen { answer::HORIZONS } else { answer::NONE };
         self.publish(observation, read, kind, self.swap.current())?;
         // Only now: a shadow delays nobody.
         if let Some(shadow) = &mut self.shadow {
             let read = os::now_ns();
-            if shadow.choose(tick, &self.positions, self.choice, &mut self.horizons) {
+            if shadow.choose(tick, &self.positions, choice, &mut self.chosen) {
                 self.publish(observation, read, answer::SHADOW, self.shadow.as_ref().and_then(HotSwap::current))?;
             }
         }
@@ -156,8 +164,9 @@ impl Server {
             message.sha256 = digest_bytes(&acting.sha256);
         }
         if kind != answer::NONE {
-            for (to, horizon) in message.horizons.iter_mut().zip(&self.horizons) {
-                *to = horizon.steps() as u8;
+            for (robot, (action, horizon)) in self.chosen.iter().enumerate() {
+                message.horizons[robot] = horizon.steps() as u8;
+                message.actions[robot] = *action as f32;
             }
         }
         message.stamp = os::now_ns();

@@ -59,12 +59,12 @@ impl Bench {
     /// One tick: the horizon of the robots.
     fn tick(&mut self) -> usize {
         let positions = [Position::zeros(); ROBOTS];
-        let mut horizons: Vec<Horizon> = Vec::new();
+        let mut chosen = Vec::new();
         self.swap.between_ticks(self.tick);
-        assert!(self.swap.choose(self.tick, &positions, Choice::Mean, &mut horizons));
+        assert!(self.swap.choose(self.tick, &positions, Choice::Mean, &mut chosen));
         self.tick += 1;
-        assert_eq!(horizons[0], horizons[1]);
-        horizons[0].steps()
+        assert_eq!(chosen[0], chosen[1]);
+        chosen[0].1.steps()
     }
 
     /// Ticks until the robots get `steps`; before that they only ever get `before`.
@@ -172,10 +172,10 @@ fn numbers_that_are_not_finite_bring_the_previous_model_back_within_the_tick() {
     orders.send(Order::Switch(load(actor(10), 1))).unwrap();
     orders.send(Order::Switch(load(fragile, 2))).unwrap();
     swap.between_ticks(0);
-    let mut horizons = Vec::new();
+    let mut answers = Vec::new();
     let mut at = |x: f64, tick: u64, swap: &mut HotSwap| {
-        let chosen = swap.choose(tick, &[Position::new(x, x); ROBOTS], Choice::Mean, &mut horizons);
-        chosen.then(|| horizons[0].steps())
+        let chosen = swap.choose(tick, &[Position::new(x, x); ROBOTS], Choice::Mean, &mut answers);
+        chosen.then(|| answers[0].1.steps())
     };
     assert_eq!(at(0.0, 0, &mut swap), Some(30));
     assert_eq!(at(1000.0, 1, &mut swap), Some(10), "the very tick is answered by the previous model");

@@ -44,6 +44,11 @@ impl Horizon {
         action.is_finite().then(|| Self::saturating((1.0 + (action + 1.0) * 24.0).ceil() as i64))
     }
 
+    /// An action that gives this horizon, in the middle of all that do.
+    pub fn action(self) -> f64 {
+        if self == Self::MIN { -1.0 } else { (f64::from(self.0) - 1.5) / 24.0 - 1.0 }
+    }
+
     /// The draw of `random:SEED` for one robot and tick: uniform over 1..=49.
     pub fn random(seed: u64, robot: usize, tick: u64) -> Self {
         let mut generator = random::stream(seed, Use::Horizon, robot as u64, tick);
@@ -83,6 +88,15 @@ impl fmt::Display for Horizon {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn every_horizon_has_an_action_that_gives_it() {
+        for steps in 1..=49 {
+            let horizon = Horizon::new(steps).unwrap();
+            assert_eq!(Horizon::from_action(horizon.action()), Some(horizon));
+            assert!((-1.0..=1.0).contains(&horizon.action()));
+        }
+    }
 
     #[test]
     fn actions_map_to_horizons_as_the_paper_rounds_them() {

@@ -21,6 +21,8 @@ pub mod order {
     pub const STOP: u32 = 2;
     /// Everybody is there: connect to everybody, then say so.
     pub const MEET: u32 = 3;
+    /// A new episode: everybody goes back to its start; `epoch` is the new one.
+    pub const EPISODE: u32 = 4;
 }
 
 /// What a [`Report`] says.
@@ -29,7 +31,7 @@ pub mod kind {
     pub const READY: u32 = 1;
     /// The robot has planned `plan.tick`.
     pub const STEP: u32 = 2;
-    /// The robot is connected to every other robot.
+    /// The robot is connected to every other robot, or at the start of a new episode.
     pub const MET: u32 = 3;
 }
 
@@ -39,7 +41,7 @@ pub mod kind {
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct Announcement {
-    /// Which coordinator of this run speaks; robots ignore older ones.
+    /// Which episode of this run it belongs to, from [`crate::team::FIRST_EPOCH`]; robots ignore older ones.
     pub epoch: u64,
     /// k.
     pub tick: u64,
@@ -148,7 +150,7 @@ pub struct Observation {
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct PolicyAnswer {
-    /// Run identity, as in [`Announcement::epoch`].
+    /// As in the [`Observation`].
     pub epoch: u64,
     /// k, as in the [`Observation`].
     pub tick: u64,
@@ -166,6 +168,8 @@ pub struct PolicyAnswer {
     pub sha256: [u8; 32],
     /// N_i^k by robot.
     pub horizons: [u8; MAX_ROBOTS],
+    /// The action they were made of, in [-1, 1], by robot: what a learner learns from.
+    pub actions: [f32; MAX_ROBOTS],
 }
 
 /// What a [`PolicyAnswer`] is.
@@ -192,6 +196,7 @@ impl PolicyAnswer {
         version: 0,
         sha256: [0; 32],
         horizons: [0; MAX_ROBOTS],
+        actions: [0.0; MAX_ROBOTS],
     };
 
     /// The horizons of `robots` robots; `None` when one is outside 1..=49 (a message is never trusted).
@@ -352,7 +357,7 @@ mod tests {
     fn payloads_have_no_hidden_padding() {
         assert_eq!(size_of::<Announcement>(), 3 * 8 + 2 * 4 + MAX_ROBOTS);
         assert_eq!(size_of::<Observation>(), 4 * 8 + MAX_ROBOTS * 16);
-        assert_eq!(size_of::<PolicyAnswer>(), 5 * 8 + 2 * 4 + 32 + MAX_ROBOTS);
+        assert_eq!(size_of::<PolicyAnswer>(), 5 * 8 + 2 * 4 + 32 + 5 * MAX_ROBOTS);
         assert_eq!(size_of::<Plan>(), 3 * 8 + 2 * 4 + 16 + 50 * 16);
         assert_eq!(size_of::<Report>(), size_of::<Plan>() + 8 + 48 + 2 * 8 + 5 * 8 + 8);
     }

@@ -78,7 +78,7 @@ unsafe impl ZeroCopySend for Observation {
 }
 unsafe impl ZeroCopySend for PolicyAnswer {
     unsafe fn type_name() -> &'static str {
-        "vodca/PolicyAnswer/1"
+        "vodca/PolicyAnswer/2"
     }
 }
 impl Default for Announcement {

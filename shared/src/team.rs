@@ -5,6 +5,7 @@ use crate::exchange::Kind;
 use crate::messages::MAX_ROBOTS;
 use crate::params::{Params, ParamsFileError};
 use crate::place::Place;
+use crate::random;
 use crate::scenario::{Scenario, ScenarioError};
 use serde::{Deserialize, Serialize};
 use std::io;
@@ -17,6 +18,9 @@ pub const TEAM_FILE: &str = "team.toml";
 pub const SCENARIO_FILE: &str = "scenario.toml";
 /// Name of the file of effective parameters.
 pub const PARAMS_FILE: &str = "params.toml";
+
+/// Epoch of the first episode of a run; every further one has the next number.
+pub const FIRST_EPOCH: u64 = 1;
 
 /// Value of [`TeamFile::horizons`] when a policy chooses them and they come with the announcements.
 pub const POLICY: &str = "policy";
@@ -33,16 +37,61 @@ pub struct TeamFile {
     pub exchange: Kind,
     /// Where horizons come from: `fixed:20`, `random:7`, `script:FILE`, or `policy` (they come with the announcements).
     pub horizons: String,
-    /// Seed of the jitter of horizons and of everything else random in a robot.
+    /// Seed of everything random in the first episode; [`random::episode_seed`] gives the others'.
     pub seed: u64,
-    /// Which coordinator of the run this is; messages of older ones are ignored.
-    pub epoch: u64,
+    /// What differs between the episodes of this run.
+    #[serde(default)]
+    pub episodes: Episodes,
     /// How long a robot waits for tick 0, s.
     pub start_patience: f64,
     /// How long a robot waits between two ticks before it takes the coordinator for dead, s.
     pub silence_limit: f64,
     /// Where the shared files are.
     pub place: Place,
+}
+
+/// What differs between the episodes of a run, besides their seeds.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Episodes {
+    /// Every start is moved by up to this much per axis, m.
+    #[serde(default)]
+    pub start_jitter: f64,
+    /// Number of the first episode: a session can go on where another one stopped.
+    #[serde(default)]
+    pub first: u64,
+    /// A generated layout less its seed (`box:8:3`): every episode has a layout of its own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub family: Option<String>,
+}
+
+/// Layouts of a family: enough that no two episodes need share one, few enough to type.
+const LAYOUTS: u64 = 1_000_000;
+
+impl Episodes {
+    /// Number of the episode with `epoch` ([`FIRST_EPOCH`] and on).
+    pub fn number(&self, epoch: u64) -> u64 {
+        self.first + epoch.saturating_sub(FIRST_EPOCH)
+    }
+
+    /// The layout of the episode with `seed`; `scenario` is that of a run without a family.
+    ///
+    /// # Errors
+    /// A layout that cannot be made, or that has no room for moved starts.
+    pub fn scenario(&self, scenario: &Scenario, params: &Params, seed: u64) -> Result<Scenario, ScenarioError> {
+        let mut layout = match &self.family {
+            Some(family) => {
+                let spec = format!("{family}:{}", seed % LAYOUTS);
+                Scenario { max_ticks: scenario.max_ticks, ..Scenario::resolve(Some(&spec), None)? }
+            }
+            None => scenario.clone(),
+        };
+        layout.seed = seed;
+        if self.start_jitter == 0.0 {
+            return Ok(layout);
+        }
+        layout.jittered(self.start_jitter, params.model.min_separation, seed)
+    }
 }
 
 /// The folder of a run does not say what a robot needs to know.
@@ -110,6 +159,13 @@ impl TeamFile {
 }
 
 impl Setup {
+    /// The same for one episode: its layout and its seed. `epoch` counts from [`FIRST_EPOCH`].
+    pub fn of_episode(&self, epoch: u64) -> Result<Self, ScenarioError> {
+        let seed = random::episode_seed(self.team.seed, self.team.episodes.number(epoch));
+        let scenario = self.team.episodes.scenario(&self.scenario, &self.params, seed)?;
+        Ok(Self { team: TeamFile { seed, ..self.team.clone() }, scenario, params: self.params.clone() })
+    }
+
     /// Reads the folder `run`.
     pub fn load(run: &Path) -> Result<Self, TeamError> {
         let path = run.join(TEAM_FILE);

@@ -7,6 +7,7 @@ pub mod params;
 pub mod range;
 pub mod replay;
 pub mod report;
+pub mod rollout;
 pub mod run;
 pub mod run_policy;
 pub mod scenario;

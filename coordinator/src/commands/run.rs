@@ -8,10 +8,11 @@ use crate::page::recorded::Recorded;
 use crate::record::about::{Machine, Versions};
 use crate::record::{About, RunFolder};
 use crate::report::report;
-use crate::run::{Options, Outcome, Team, Tick, Verdict};
+use crate::run::{Options, Outcome, Tick, Verdict};
 use crate::session::Session;
 use crate::stdout;
 use crate::summary::End;
+use crate::team::Team;
 use crate::view::{Views, Wanted};
 use shared::exchange::Kind;
 use shared::horizon_source::{HorizonSource, HorizonSpec};
@@ -180,7 +181,7 @@ fn play(
         let duration = Duration::from_nanos(tick.collected.saturating_sub(tick.announced));
         let observed = session.tick(tick.tick, tick.steps, duration);
         views.tick(tick.tick, tick.steps, duration, session.metrics());
-        Ok(if observed? { Verdict::Arrived } else { Verdict::Continue })
+        Ok(if observed? { Verdict::Over } else { Verdict::Continue })
     };
     let ended = team.run(stop, &mut observer);
     views.close(); // the terminal first: what follows is to be read

@@ -55,6 +55,7 @@ impl PolicyArgs {
                 onnxruntime: self.onnxruntime.as_deref().map(there).transpose()?,
                 poll_ms: self.policy_poll,
             },
+            record: true,
             wait: Duration::from_millis(self.policy_wait),
             hold: self.policy_hold,
             default: Horizon::new(self.policy_default).map_err(Failure::usage)?,

@@ -6,6 +6,7 @@ mod record;
 mod server;
 mod summary;
 
+pub use self::record::digits;
 pub use self::server::{ServerError, server_program};
 pub use self::summary::{PolicySummary, ShadowSummary, VersionSummary};
 
@@ -22,11 +23,16 @@ use shared::place::Place;
 use shared::policy::settings::{PolicySettings, SettingsError};
 use shared::services::{PolicyAsker, ServiceError};
 use shared::stop::StopFlag;
+use shared::team::FIRST_EPOCH;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 /// How often a waiting coordinator looks whether the server lives.
 const LOOK_AROUND: Duration = Duration::from_millis(20);
+/// How long a policy that must act may take to do so.
+const SWAP_PATIENCE: Duration = Duration::from_secs(20);
+/// How often it is asked for.
+const SWAP_LOOK: Duration = Duration::from_millis(2);
 
 /// How a run uses a policy.
 #[derive(Clone, Debug)]
@@ -35,6 +41,8 @@ pub struct PolicyOptions {
     pub program: PathBuf,
     /// What goes into `policy.toml`.
     pub settings: PolicySettings,
+    /// Write down which version acted at every tick.
+    pub record: bool,
     /// How long a tick waits for its answer.
     pub wait: Duration,
     /// Ticks in a row for which robots keep their last horizon when none comes.
@@ -55,6 +63,17 @@ pub enum PolicyError {
     /// The exchange.
     #[error(transparent)]
     Exchange(#[from] ServiceError),
+    /// The policy that must act does not.
+    #[error(
+        "the policy with SHA-256 {wanted} did not take over within {} s; `STATUS.json` and the policy server's log in \
+         the run's folder say why", patience.as_secs()
+    )]
+    NotSwapped {
+        /// Which one.
+        wanted: String,
+        /// How long it was waited for.
+        patience: Duration,
+    },
     /// `policy.csv` or `shadow.csv`.
     #[error(transparent)]
     Record(#[from] RecordError),
@@ -84,33 +103,33 @@ pub struct PolicySource {
     /// Whether a server started by hand has taken the place of ours.
     successor: bool,
     bridge: Bridge,
-    record: PolicyRecord,
+    record: Option<PolicyRecord>,
     tally: Tally,
     horizons: Vec<Option<Horizon>>,
+    /// Of the newest tick; empty when the policy did not choose its horizons.
+    actions: Vec<f32>,
 }
 
 impl PolicySource {
     /// Makes the services, writes `policy.toml` and starts the server. `team.toml` must be there.
-    pub fn start(
-        options: PolicyOptions,
-        place: &Place,
-        run: &Path,
-        robots: usize,
-        epoch: u64,
-    ) -> Result<Self, PolicyError> {
+    pub fn start(options: PolicyOptions, place: &Place, run: &Path, robots: usize) -> Result<Self, PolicyError> {
         let asker = PolicyAsker::create(place)?;
         options.settings.write(run)?;
         Ok(Self {
             process: ServerProcess::start(&options.program, run)?,
             asker,
             robots,
-            epoch,
+            epoch: FIRST_EPOCH,
             present: false,
             successor: false,
             bridge: Bridge::new(robots, options.hold, options.default),
-            record: PolicyRecord::create(run, robots, options.settings.shadow.is_some())?,
+            record: match options.record {
+                true => Some(PolicyRecord::create(run, robots, options.settings.shadow.is_some())?),
+                false => None,
+            },
             tally: Tally::new(options.settings.policy.clone(), options.settings.shadow.clone()),
             horizons: vec![None; robots],
+            actions: Vec::with_capacity(robots),
             options,
         })
     }
@@ -119,8 +138,8 @@ impl PolicySource {
     /// before it begins. `false`: somebody asked to stop.
     pub fn gather(&mut self, deadline: Instant, stop: &StopFlag) -> Result<bool, PolicyError> {
         loop {
-            while let Some(answer) = self.asker.receive()? {
-                self.present |= answer.epoch == self.epoch;
+            while self.asker.receive()?.is_some() {
+                self.present = true;
             }
             if self.present {
                 return Ok(true);
@@ -137,20 +156,10 @@ impl PolicySource {
     pub fn choose(
         &mut self,
         tick: u64,
-        positions: impl Iterator<Item = Position>,
+        positions: &[Position],
         stop: &StopFlag,
     ) -> Result<&[Option<Horizon>], PolicyError> {
-        let mut question = Observation {
-            epoch: self.epoch,
-            tick,
-            stamp: 0,
-            robots: self.robots as u64,
-            positions: [[0.0; 2]; MAX_ROBOTS],
-        };
-        for (to, position) in question.positions.iter_mut().zip(positions) {
-            *to = position.into();
-        }
-        question.stamp = os::now_ns();
+        let question = self.question(tick, positions);
         // What fails between the two processes is a missing answer and not the end of the run.
         let answer = match self.asker.ask(question) {
             Ok(()) => self.await_answer(tick, stop)?,
@@ -163,13 +172,70 @@ impl PolicySource {
         if let (Some(answer), Some(_)) = (&answer, &horizons) {
             self.tally.answered(answer, os::now_ns());
         }
+        self.actions.clear();
+        if let (Some(answer), Some(_)) = (&answer, &horizons) {
+            self.actions.extend_from_slice(&answer.actions[..self.robots]);
+        }
         let source = self.bridge.take(horizons);
         self.tally.tick(tick, source, answer.as_ref());
-        self.record.tick(tick, source, answer.as_ref())?;
+        if let Some(record) = &mut self.record {
+            record.tick(tick, source, answer.as_ref())?;
+        }
         for (to, horizon) in self.horizons.iter_mut().zip(self.bridge.horizons()) {
             *to = Some(*horizon);
         }
         Ok(&self.horizons)
+    }
+
+    /// What the policy chose for the newest tick, in [-1, 1], by robot; empty when it chose nothing.
+    pub fn actions(&self) -> &[f32] {
+        &self.actions
+    }
+
+    /// The next questions belong to the episode `epoch`.
+    pub fn next_episode(&mut self, epoch: u64) {
+        self.epoch = epoch;
+        self.bridge = Bridge::new(self.robots, self.options.hold, self.options.default);
+    }
+
+    /// Waits until the policy with the SHA-256 `wanted` acts, by asking about `positions`; `false`:
+    /// somebody asked to stop.
+    pub fn await_version(
+        &mut self,
+        wanted: &[u8; 32],
+        positions: &[Position],
+        stop: &StopFlag,
+    ) -> Result<bool, PolicyError> {
+        let deadline = Instant::now() + SWAP_PATIENCE;
+        while !stop.is_set() {
+            self.asker.ask(self.question(0, positions))?;
+            if let Some(answer) = self.await_answer(0, stop)?
+                && answer.sha256 == *wanted
+            {
+                return Ok(true);
+            }
+            if Instant::now() > deadline {
+                return Err(PolicyError::NotSwapped { wanted: digits(wanted), patience: SWAP_PATIENCE });
+            }
+            std::thread::sleep(SWAP_LOOK);
+        }
+        Ok(false)
+    }
+
+    /// The observation of robots measured at `positions`.
+    fn question(&self, tick: u64, positions: &[Position]) -> Observation {
+        let mut question = Observation {
+            epoch: self.epoch,
+            tick,
+            stamp: 0,
+            robots: self.robots as u64,
+            positions: [[0.0; 2]; MAX_ROBOTS],
+        };
+        for (to, position) in question.positions.iter_mut().zip(positions) {
+            *to = (*position).into();
+        }
+        question.stamp = os::now_ns();
+        question
     }
 
     /// The answer for `tick`; `None`: it did not come in time.
@@ -177,10 +243,10 @@ impl PolicySource {
         let deadline = Instant::now() + self.options.wait;
         loop {
             while let Some(answer) = self.asker.receive()? {
-                if answer.epoch != self.epoch {
+                self.present = true;
+                if answer.epoch != self.epoch && answer.kind != answer::HELLO {
                     continue;
                 }
-                self.present = true;
                 match answer.kind {
                     answer::SHADOW => self.shadow(&answer)?,
                     answer::HORIZONS | answer::NONE if answer.tick == tick => {
@@ -207,7 +273,10 @@ impl PolicySource {
     fn shadow(&mut self, answer: &PolicyAnswer) -> Result<(), PolicyError> {
         let Some(horizons) = answer.horizons(self.robots) else { return Ok(()) };
         self.tally.shadow(answer, &horizons, self.bridge.horizons());
-        Ok(self.record.shadow(answer.tick, &horizons)?)
+        match &mut self.record {
+            Some(record) => Ok(record.shadow(answer.tick, &horizons)?),
+            None => Ok(()),
+        }
     }
 
     /// Ends the server and says how it went.
@@ -219,7 +288,9 @@ impl PolicySource {
             }
         }
         self.process.end();
-        self.record.finish()?;
+        if let Some(record) = self.record {
+            record.finish()?;
+        }
         Ok(self.tally.summary())
     }
 }

@@ -55,7 +55,7 @@ impl PolicyRecord {
 }
 
 /// Lower-case hexadecimal digits.
-pub(super) fn digits(bytes: &[u8]) -> String {
+pub fn digits(bytes: &[u8]) -> String {
     bytes.iter().fold(String::new(), |mut text, byte| {
         let _ = write!(text, "{byte:02x}");
         text

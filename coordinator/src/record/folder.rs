@@ -44,6 +44,12 @@ pub enum RecordError {
         /// The file.
         path: PathBuf,
     },
+    /// A shard of rollouts cannot be written.
+    #[error("{reason}; the shards written before are whole")]
+    Rollout {
+        /// What went wrong.
+        reason: String,
+    },
     /// A value has no form in the file's format.
     #[error("cannot express {what} in {}: {reason}; please report this as a fault of vodca", path.display())]
     Encode {

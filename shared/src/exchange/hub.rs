@@ -56,6 +56,13 @@ impl Hub {
         self.order(order::MEET)
     }
 
+    /// Begins the next episode: every robot goes back to its start. Gives the new epoch.
+    pub fn next_episode(&mut self) -> Result<u64, ServiceError> {
+        self.epoch += 1;
+        self.order(order::EPISODE)?;
+        Ok(self.epoch)
+    }
+
     /// Tells every robot to end.
     pub fn stop(&mut self) -> Result<(), ServiceError> {
         self.order(order::STOP)

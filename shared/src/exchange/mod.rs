@@ -56,6 +56,11 @@ pub enum Order {
     },
     /// Everybody is there and connected now: say so.
     Meet,
+    /// A new episode: go back to its start and say so.
+    Episode {
+        /// Its epoch.
+        epoch: u64,
+    },
     /// End normally.
     Stop,
 }
@@ -126,14 +131,17 @@ impl Clock {
                         })
                     }
                     order::MEET => Some(Order::Meet),
+                    order::EPISODE if announcement.epoch > epoch => Some(Order::Episode { epoch: announcement.epoch }),
                     order::STOP => Some(Order::Stop),
                     _ => None,
                 }
             })?;
             match received {
                 Some(Some(order)) => {
-                    if let Order::Tick { tick, .. } = order {
-                        self.next_tick = tick + 1;
+                    match order {
+                        Order::Tick { tick, .. } => self.next_tick = tick + 1,
+                        Order::Episode { epoch } => (self.epoch, self.next_tick) = (epoch, 0),
+                        Order::Meet | Order::Stop => {}
                     }
                     return Ok(Some(order));
                 }

@@ -35,6 +35,9 @@ impl Exchange for Peer {
             self.sender.connect()?;
             self.receiver.receive()?;
         }
+        if let Some(Order::Episode { .. }) = order {
+            self.early.fill(None);
+        }
         let Some(Order::Tick { tick, .. }) = order else { return Ok(order) };
         let mut tell = |plan: &Plan| {
             if let Some(prediction) = plan.prediction() {
