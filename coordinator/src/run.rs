@@ -157,6 +157,8 @@ pub struct Tick<'a> {
     pub stamps: &'a [Stamps],
     /// When the tick was announced, ns of the monotonic clock.
     pub announced: u64,
+    /// When everybody had been woken, ns.
+    pub rung: u64,
     /// When the last report had come, ns.
     pub collected: u64,
     /// How late it was announced (real time only), ns.
@@ -360,13 +362,14 @@ impl Team {
                 None => &[],
             };
             let announced = self.hub.announce(tick, horizons)?;
+            let rung = os::now_ns();
             let late = clock.begin(announced);
             let deadline = Instant::now() + self.options.tick_deadline;
             let done = self.collect(Some(tick), deadline, stop, |heard, robot, report| {
                 if report.kind != kind::STEP || report.plan.tick != tick || !heard.roster.answer(robot) {
                     return Ok(());
                 }
-                heard.stamps[robot] = report.stamps;
+                heard.stamps[robot] = Stamps { collected: os::now_ns(), ..report.stamps };
                 heard.steps[robot] = report.to_step();
                 let strange = "sent a report that means nothing here; is its program of another version?";
                 let understood = heard.steps[robot].is_some();
@@ -384,7 +387,7 @@ impl Team {
                 *position = step.next_position;
             }
             *ticks = tick + 1;
-            let seen = Tick { tick, steps: &finished, stamps: &self.stamps, announced, collected, late };
+            let seen = Tick { tick, steps: &finished, stamps: &self.stamps, announced, rung, collected, late };
             match observer(&seen)? {
                 Verdict::Continue => {}
                 Verdict::Arrived => return Ok(Outcome::Completed),
