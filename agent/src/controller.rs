@@ -1,6 +1,7 @@
 //! What every controller is: one robot, one tick, pure (no I/O, nothing allocated). Time is measured
 //! and reported, but nothing is ever decided by it.
 
+use crate::mpc::cross_check::Comparison;
 use shared::horizon::Horizon;
 use shared::prediction::Prediction;
 use shared::step::{Level, Status};
@@ -54,6 +55,8 @@ pub struct Decision {
     pub status: Status,
     /// Whether the last check changed the input.
     pub shielded: bool,
+    /// Time before the QP's solvers, ns; 0 for a controller without a QP.
+    pub detect_ns: u64,
     /// Time in the QP's solvers, ns; 0 for a controller without a QP.
     pub solve_ns: u64,
 }
@@ -62,4 +65,9 @@ pub struct Decision {
 pub trait Controller: Send {
     /// Decides tick `view.tick`. Called once per tick, ticks in order.
     fn tick(&mut self, view: &View<'_>) -> Decision;
+
+    /// What solving every QP twice has found so far; `None`: that was not asked for, or there is no QP.
+    fn comparison(&self) -> Option<Comparison> {
+        None
+    }
 }

@@ -4,6 +4,7 @@ use crate::baseline::orca::OrcaController;
 use crate::controller::{Controller, View};
 use crate::hearing::{Hearing, measured};
 use crate::layout::Layout;
+use crate::mpc::cross_check::Comparison;
 use crate::vodca_controller::VodcaController;
 use shared::Position;
 use shared::horizon::Horizon;
@@ -30,6 +31,28 @@ impl Robot {
             ControllerKind::Vodca => Box::new(VodcaController::new(robot, params, &layout)),
             ControllerKind::Orca => Box::new(OrcaController::new(robot, params, &layout, seed)),
         };
+        Self::driven_by(controller, robot, scenario, params, seed)
+    }
+
+    /// The same, with every QP solved a second time by Clarabel (see [`Self::comparison`]).
+    pub fn checked(robot: usize, scenario: &Scenario, params: &Params, seed: u64) -> Self {
+        let layout = Layout::of(scenario, params.model.min_separation);
+        match params.controller.kind {
+            ControllerKind::Vodca => {
+                let controller = VodcaController::new(robot, params, &layout).checked();
+                Self::driven_by(Box::new(controller), robot, scenario, params, seed)
+            }
+            ControllerKind::Orca => Self::new(robot, scenario, params, seed),
+        }
+    }
+
+    fn driven_by(
+        controller: Box<dyn Controller>,
+        robot: usize,
+        scenario: &Scenario,
+        params: &Params,
+        seed: u64,
+    ) -> Self {
         Self {
             robot,
             seed,
@@ -38,6 +61,11 @@ impl Robot {
             position: scenario.robots[robot].start,
             controller,
         }
+    }
+
+    /// What solving every QP twice has found; `None` unless [`Self::checked`] built this robot.
+    pub fn comparison(&self) -> Option<Comparison> {
+        self.controller.comparison()
     }
 
     /// Where the robot is, m.
@@ -64,6 +92,7 @@ impl Robot {
             status: decision.status,
             shielded: decision.shielded,
             plan: decision.plan,
+            detect_ns: decision.detect_ns,
             solve_ns: decision.solve_ns,
             step_ns,
         }
@@ -82,8 +111,9 @@ mod tests {
             let (scenario, params) = set_up(Some("two_setpoint"), None, profile, &[]).unwrap();
             let hearing = Hearing::new(0, &scenario, &params.disturbance, 0);
             let step = Robot::new(0, &scenario, &params, 0).step(0, Horizon::MAX, &hearing);
-            assert_eq!(step.solve_ns > 0, has_qp, "{profile}");
-            assert!(step.solve_ns < step.step_ns, "{profile}: {} of {} ns", step.solve_ns, step.step_ns);
+            assert_eq!((step.detect_ns > 0, step.solve_ns > 0), (has_qp, has_qp), "{profile}");
+            let parts = step.detect_ns + step.solve_ns;
+            assert!(parts < step.step_ns, "{profile}: {parts} of {} ns", step.step_ns);
         }
     }
 }

@@ -157,7 +157,7 @@ fn serve<D: Drive>(
                 let planned = os::now_ns();
                 let mut report = Report::step(now.epoch, tick, robot, &step);
                 report.plan.stamp = os::now_ns();
-                report.stamps = Stamps { announced, woken, read, planned, reported: report.plan.stamp };
+                report.stamps = Stamps { announced, woken, read, planned, ..Stamps::default() };
                 exchange.publish(report)?;
                 last = Some(tick);
             }

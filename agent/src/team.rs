@@ -2,6 +2,7 @@
 //! processes. Golden tests, sweeps and replays stand on it; agent processes give the same bytes.
 
 use crate::hearing::Hearing;
+use crate::mpc::cross_check::Comparison;
 use crate::robot::Robot;
 use shared::horizon::Horizon;
 use shared::params::{Disturbance, Params};
@@ -20,11 +21,25 @@ pub struct Team {
 impl Team {
     /// A team at its start positions, before tick 0. `seed` feeds the disturbances.
     pub fn new(scenario: &Scenario, params: &Params, seed: u64) -> Self {
+        Self::of(Robot::new, scenario, params, seed)
+    }
+
+    /// The same team, solving every QP a second time with Clarabel (see [`Self::comparison`]).
+    pub fn checked(scenario: &Scenario, params: &Params, seed: u64) -> Self {
+        Self::of(Robot::checked, scenario, params, seed)
+    }
+
+    fn of(
+        build: impl Fn(usize, &Scenario, &Params, u64) -> Robot,
+        scenario: &Scenario,
+        params: &Params,
+        seed: u64,
+    ) -> Self {
         let robots = scenario.robots.len();
         let Disturbance { plan_loss, position_loss, .. } = params.disturbance;
         let ears = if plan_loss + position_loss > 0.0 { robots } else { 1 };
         Self {
-            robots: (0..robots).map(|robot| Robot::new(robot, scenario, params, seed)).collect(),
+            robots: (0..robots).map(|robot| build(robot, scenario, params, seed)).collect(),
             hearing: (0..ears).map(|robot| Hearing::new(robot, scenario, &params.disturbance, seed)).collect(),
             steps: Vec::with_capacity(robots),
             tick: 0,
@@ -44,6 +59,15 @@ impl Team {
         }
         self.tick += 1;
         &self.steps
+    }
+
+    /// What solving every QP twice has found, over all robots; `None` unless [`Self::checked`] built this
+    /// team, or its controllers have no QP.
+    pub fn comparison(&self) -> Option<Comparison> {
+        self.robots.iter().filter_map(Robot::comparison).reduce(|mut sum, found| {
+            sum.absorb(&found);
+            sum
+        })
     }
 
     /// The next tick to run.

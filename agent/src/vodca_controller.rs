@@ -2,6 +2,7 @@
 
 use crate::controller::{Controller, Decision, Neighbour, View};
 use crate::layout::Layout;
+use crate::mpc::cross_check::Comparison;
 use crate::mpc::ladder::Ladder;
 use crate::mpc::problem::{Plan, Problem, Row, SlackPrice, SolveError, Target};
 use crate::reference;
@@ -53,6 +54,11 @@ impl VodcaController {
             previous: None,
             memory: ConflictMemory::default(),
         }
+    }
+
+    /// Solves every QP a second time with Clarabel and compares. Allocates in every tick.
+    pub fn checked(self) -> Self {
+        Self { ladder: Ladder::checked(), ..self }
     }
 
     /// Rules 2 and 3: collision rows from the plans of tick k - 1. None at the first tick.
@@ -184,17 +190,23 @@ fn bounded(axis: f64, bound: f64) -> f64 {
 
 impl Controller for VodcaController {
     fn tick(&mut self, view: &View<'_>) -> Decision {
+        let started = Instant::now();
         let rows = self.detect(view);
         self.memory.remember(&self.params.aim, &self.params.vodca, rows);
         self.aim(view);
         self.bound_cell(view);
         let solving = Instant::now();
+        let detect_ns = (solving - started).as_nanos() as u64;
         let (level, status) = self.solve(view, rows);
         let solve_ns = solving.elapsed().as_nanos() as u64;
         let (prediction, shielded) = self.publish(view);
         let input: Input = self.plan.inputs[0];
         self.previous = Some(Previous { prediction: prediction.clone(), plan: self.plan.clone() });
-        Decision { input, plan: prediction, rows: rows as u32, level, status, shielded, solve_ns }
+        Decision { input, plan: prediction, rows: rows as u32, level, status, shielded, detect_ns, solve_ns }
+    }
+
+    fn comparison(&self) -> Option<Comparison> {
+        self.ladder.comparison()
     }
 }
 

@@ -1,5 +1,6 @@
 //! A whole run in this process: what sweeps, comparisons and replays stand on.
 
+use crate::solver_check::SolverCheck;
 use agent::team::Team;
 use shared::horizon::Horizon;
 use shared::horizon_source::HorizonSource;
@@ -16,10 +17,20 @@ pub fn run_team<E>(
     scenario: &Scenario,
     params: &Params,
     horizon: impl Fn(usize, u64) -> Horizon,
+    on_tick: impl FnMut(u64, &[Step]) -> Result<(), E>,
+) -> Result<RunMetrics, E> {
+    drive(&mut Team::new(scenario, params, scenario.seed), scenario, params, horizon, on_tick)
+}
+
+/// [`run_team`] with a team that is built already and has not driven yet.
+pub fn drive<E>(
+    team: &mut Team,
+    scenario: &Scenario,
+    params: &Params,
+    horizon: impl Fn(usize, u64) -> Horizon,
     mut on_tick: impl FnMut(u64, &[Step]) -> Result<(), E>,
 ) -> Result<RunMetrics, E> {
     let mut metrics = RunMetrics::new(scenario, params);
-    let mut team = Team::new(scenario, params, scenario.seed);
     for tick in 0..scenario.max_ticks {
         let steps = team.step(|robot| horizon(robot, tick));
         metrics.observe(tick, steps);
@@ -29,6 +40,16 @@ pub fn run_team<E>(
         }
     }
     Ok(metrics)
+}
+
+/// [`run_whole`] with every QP solved a second time by Clarabel.
+pub fn run_checked(scenario: &Scenario, params: &Params, source: &HorizonSource) -> (RunSummary, SolverCheck) {
+    let mut team = Team::checked(scenario, params, scenario.seed);
+    let horizon = |robot, tick| source.horizon(robot, tick);
+    match drive(&mut team, scenario, params, horizon, |_, _| Ok::<(), Infallible>(())) {
+        Ok(metrics) => (metrics.finish(), team.comparison().unwrap_or_default().into()),
+        Err(never) => match never {},
+    }
 }
 
 /// [`run_team`] with the horizons of `source`, to its end; `on_tick` sees the steps of every tick.

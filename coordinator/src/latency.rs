@@ -19,8 +19,14 @@ pub struct Percentiles {
     pub count: u64,
     /// Half are no longer than this, us.
     pub p50_us: f64,
+    /// 90 % are no longer than this, us.
+    #[serde(default)]
+    pub p90_us: f64,
     /// 99 % are no longer than this, us.
     pub p99_us: f64,
+    /// 99.9 % are no longer than this, us.
+    #[serde(default)]
+    pub p999_us: f64,
     /// The longest, us.
     pub max_us: f64,
 }
@@ -44,13 +50,29 @@ impl Latency {
         self.0.saturating_record(nanoseconds.clamp(LOWEST, LONGEST));
     }
 
+    /// Durations and how many of each, shortest first, in steps of one percent: for a plot or a file.
+    pub fn buckets(&self) -> Vec<(u64, u64)> {
+        let Ok(mut coarse) = Histogram::<u64>::new_with_bounds(LOWEST, LONGEST, 2) else { return Vec::new() };
+        for value in self.0.iter_recorded() {
+            coarse.saturating_record_n(value.value_iterated_to(), value.count_at_value());
+        }
+        coarse.iter_recorded().map(|value| (value.value_iterated_to(), value.count_at_value())).collect()
+    }
+
     /// The figures so far; all 0 when nothing was recorded.
     pub fn percentiles(&self) -> Percentiles {
         if self.0.is_empty() {
             return Percentiles::default();
         }
         let at = |quantile| self.0.value_at_quantile(quantile) as f64 / 1e3;
-        Percentiles { count: self.0.len(), p50_us: at(0.5), p99_us: at(0.99), max_us: self.0.max() as f64 / 1e3 }
+        Percentiles {
+            count: self.0.len(),
+            p50_us: at(0.5),
+            p90_us: at(0.9),
+            p99_us: at(0.99),
+            p999_us: at(0.999),
+            max_us: self.0.max() as f64 / 1e3,
+        }
     }
 }
 
@@ -71,8 +93,18 @@ mod tests {
         let figures = latency.percentiles();
         assert_eq!(figures.count, 1000);
         assert!((figures.p50_us - 500.0).abs() <= 1.0, "{figures:?}");
+        assert!((figures.p90_us - 900.0).abs() <= 1.0 && (figures.p999_us - 999.0).abs() <= 2.0, "{figures:?}");
         assert!((figures.p99_us - 990.0).abs() <= 2.0, "{figures:?}");
         assert!((figures.max_us - 1000.0).abs() <= 2.0, "{figures:?}");
+    }
+
+    #[test]
+    fn buckets_hold_every_duration_once() {
+        let mut latency = Latency::new();
+        (1..=1000).for_each(|n| latency.record(Duration::from_micros(n)));
+        let buckets = latency.buckets();
+        assert_eq!(buckets.iter().map(|(_, count)| count).sum::<u64>(), 1000);
+        assert!(buckets.len() < 600 && buckets.windows(2).all(|pair| pair[0].0 < pair[1].0), "{}", buckets.len());
     }
 
     #[test]

@@ -1,8 +1,10 @@
 //! What a user reads at the end of a run: a line per robot, and how it went.
 
+use crate::latency::Percentiles;
 use crate::policy::{PolicySummary, VersionSummary};
 use crate::summary::{End, Summary};
 use crate::text_table::TextTable;
+use crate::tick_parts::PARTS;
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -67,14 +69,30 @@ fn figures(summary: &Summary, folder: &Path) -> String {
         ("below r_min", format!("{} ticks, {} pairs", run.ticks_below_min_separation, run.pairs_below_min_separation)),
         ("collisions", format!("{} pairs", run.collisions)),
         ("guarantee", summary.guarantee.clone()),
-        ("tick", format!("p50 {:.0} us, p99 {:.0} us", summary.tick_latency.p50_us, summary.tick_latency.p99_us)),
-        ("folder", folder.display().to_string()),
     ];
     let policy = summary.policy.as_ref().map(policy_lines).unwrap_or_default();
-    lines.iter().chain(&policy).fold(String::new(), |mut text, (name, value)| {
-        let _ = writeln!(text, "{name:<16}{value}"); // writing to a String cannot fail
-        text
-    })
+    let last = [("folder", folder.display().to_string())];
+    lines.iter().chain(&time_lines(summary)).chain(&policy).chain(&last).fold(
+        String::new(),
+        |mut text, (name, value)| {
+            let _ = writeln!(text, "{name:<16}{value}"); // writing to a String cannot fail
+            text
+        },
+    )
+}
+
+fn time_lines(summary: &Summary) -> Vec<(&'static str, String)> {
+    let both = |figures: &Percentiles| format!("p50 {:.0} us, p99 {:.0} us", figures.p50_us, figures.p99_us);
+    let mut lines = vec![("tick", both(&summary.tick_latency))];
+    let part = |name: &&str| summary.tick_parts.get(*name).map(|figures| format!("{name} {:.1}", figures.p50_us));
+    let parts: Vec<String> = PARTS.iter().filter_map(part).collect();
+    if !parts.is_empty() {
+        lines.push(("of a robot's", format!("{} us (p50 each)", parts.join(", "))));
+    }
+    if let Some(late) = &summary.lateness {
+        lines.push(("lateness", both(late)));
+    }
+    lines
 }
 
 fn policy_lines(policy: &PolicySummary) -> Vec<(&'static str, String)> {
@@ -113,9 +131,13 @@ mod tests {
     use super::*;
     use crate::record::samples;
     use crate::summary::Timings;
+    use crate::tick_parts::TickTimes;
+    use shared::messages::Stamps;
     use shared::metrics::RunMetrics;
     use shared::params::Params;
-    use std::time::Duration;
+
+    const STAMPS: Stamps =
+        Stamps { announced: 0, woken: 40_000, read: 50_000, planned: 60_000, reported: 67_000, collected: 99_000 };
 
     fn summary() -> Summary {
         let (scenario, params) = (samples::scenario(2), Params::safe());
@@ -123,7 +145,7 @@ mod tests {
         for tick in 0..3 {
             let steps = samples::steps(2, tick);
             metrics.observe(tick, &steps);
-            timings.observe(Duration::from_micros(150), &steps);
+            timings.observe(&TickTimes { duration_ns: 150_000, stamps: &[STAMPS; 2], ..TickTimes::default() }, &steps);
         }
         Summary::new(&scenario, &params, ("safe", "fixed:3"), End::OutOfTicks, metrics.finish(), &timings)
     }
@@ -140,9 +162,14 @@ mod tests {
     #[test]
     fn the_summary_says_why_it_failed_and_where_the_record_is() {
         let text = report(&summary(), Path::new("runs/x"));
-        for part in
-            ["success         no: 0 of 2 arrived in time", "ticks           3", "folder          runs/x", "p50 150 us"]
-        {
+        for part in [
+            "success         no: 0 of 2 arrived in time",
+            "ticks           3",
+            "folder          runs/x",
+            "p50 150 us",
+            "wake 40.0, read 10.0,",
+            "collect 32.0 us",
+        ] {
             assert!(text.contains(part), "{part}\n{text}");
         }
     }
@@ -162,6 +189,7 @@ mod tests {
             "collisions",
             "activations",
             "solver_levels",
+            "tick_parts",
             "robots",
             "version",
         ] {

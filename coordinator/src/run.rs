@@ -178,6 +178,8 @@ pub struct Tick<'a> {
     pub stamps: &'a [Stamps],
     /// When the tick was announced, ns of the monotonic clock.
     pub announced: u64,
+    /// When everybody had been woken, ns.
+    pub rung: u64,
     /// When the last report had come, ns.
     pub collected: u64,
     /// How late it was announced (real time only), ns.

@@ -5,12 +5,12 @@ use crate::progress::Progress;
 use crate::record::latency::{self, LatencyWriter};
 use crate::record::{About, RecordError, Recorder, RunFolder};
 use crate::summary::{End, Summary, Timings};
+use crate::tick_parts::TickTimes;
 use shared::metrics::RunMetrics;
 use shared::params::Params;
 use shared::scenario::Scenario;
 use shared::step::Step;
 use std::path::{Path, PathBuf};
-use std::time::Duration;
 
 /// A run that is being watched.
 pub struct Session {
@@ -40,13 +40,13 @@ impl Session {
         })
     }
 
-    /// Takes in tick `tick`, which took `duration`; `steps[i]` is what robot i did. `true`: everybody has
+    /// Takes in tick `tick`, which took `times`; `steps[i]` is what robot i did. `true`: everybody has
     /// arrived, the run is over.
-    pub fn tick(&mut self, tick: u64, steps: &[Step], duration: Duration) -> Result<bool, RecordError> {
+    pub fn tick(&mut self, tick: u64, steps: &[Step], times: &TickTimes<'_>) -> Result<bool, RecordError> {
         self.recorder.tick(tick, steps)?;
-        self.latency.tick(tick, duration, steps)?;
+        self.latency.tick(tick, times, steps)?;
         self.metrics.observe(tick, steps);
-        self.timings.observe(duration, steps);
+        self.timings.observe(times, steps);
         let metrics = &self.metrics;
         self.progress.tick(tick + 1, metrics.arrived(), steps.len(), metrics.min_separation());
         Ok(metrics.arrived_all())
@@ -75,6 +75,7 @@ impl Session {
         let names = (self.about.profile.as_str(), self.about.horizon.as_str());
         let mut summary = Summary::new(&self.scenario, &self.params, names, end, self.metrics.finish(), &self.timings);
         summary.policy = policy;
+        summary.lateness = self.about.real_time.then(|| self.timings.lateness());
         let folder = self.recorder.finish(&summary)?;
         Ok((summary, folder))
     }

@@ -3,12 +3,14 @@
 use crate::guarantee;
 use crate::latency::{Latency, Percentiles};
 use crate::policy::PolicySummary;
+use crate::solver_check::SolverCheck;
+use crate::tick_parts::{TickParts, TickTimes};
 use serde::{Deserialize, Serialize};
 use shared::metrics::RunSummary;
 use shared::params::Params;
 use shared::scenario::Scenario;
 use shared::step::Step;
-use std::time::Duration;
+use std::collections::BTreeMap;
 
 /// Version of the format.
 pub const VERSION: u32 = 1;
@@ -50,11 +52,20 @@ pub struct Summary {
     pub run: RunSummary,
     /// Duration of a tick as the coordinator sees it.
     pub tick_latency: Percentiles,
+    /// Where its time goes ([`crate::tick_parts::PARTS`], and `announce`), over all robots and ticks.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub tick_parts: BTreeMap<String, Percentiles>,
+    /// How late ticks were announced, in real time.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lateness: Option<Percentiles>,
     /// Time in the QP's solvers, by robot.
     pub solve_latency: Vec<Percentiles>,
     /// What the policy did, in a run with one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub policy: Option<PolicySummary>,
+    /// What solving every QP twice found, where that was asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub solver_check: Option<SolverCheck>,
 }
 
 impl Summary {
@@ -79,8 +90,11 @@ impl Summary {
             guarantee_broken: guarantee.broken,
             run,
             tick_latency: timings.tick.percentiles(),
+            tick_parts: timings.parts.percentiles(),
+            lateness: None,
             solve_latency: timings.solve.iter().map(Latency::percentiles).collect(),
             policy: None,
+            solver_check: None,
         }
     }
 }
@@ -89,20 +103,34 @@ impl Summary {
 #[derive(Clone, Debug)]
 pub struct Timings {
     tick: Latency,
+    late: Latency,
+    parts: TickParts,
     solve: Vec<Latency>,
 }
 
 impl Timings {
     /// For a team of `robots`.
     pub fn new(robots: usize) -> Self {
-        Self { tick: Latency::new(), solve: vec![Latency::new(); robots] }
+        Self {
+            tick: Latency::new(),
+            late: Latency::new(),
+            parts: TickParts::default(),
+            solve: vec![Latency::new(); robots],
+        }
     }
 
-    /// Takes in a tick that took `duration`.
-    pub fn observe(&mut self, duration: Duration, steps: &[Step]) {
-        self.tick.record(duration);
+    /// Takes in a tick.
+    pub fn observe(&mut self, times: &TickTimes<'_>, steps: &[Step]) {
+        self.tick.record_ns(times.duration_ns);
+        self.late.record_ns(times.late_ns);
+        self.parts.observe(times, steps);
         for (latency, step) in self.solve.iter_mut().zip(steps) {
             latency.record_ns(step.solve_ns);
         }
+    }
+
+    /// How late ticks were announced.
+    pub fn lateness(&self) -> Percentiles {
+        self.late.percentiles()
     }
 }

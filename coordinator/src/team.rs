@@ -291,13 +291,14 @@ impl Team {
                 None => &[],
             };
             let announced = self.hub.announce(tick, horizons)?;
+            let rung = os::now_ns();
             let late = clock.begin(announced);
             let deadline = Instant::now() + self.options.tick_deadline;
             let done = self.collect(Some(tick), deadline, stop, |heard, robot, report| {
                 if report.kind != kind::STEP || report.plan.tick != tick || !heard.roster.answer(robot) {
                     return Ok(());
                 }
-                heard.stamps[robot] = report.stamps;
+                heard.stamps[robot] = Stamps { collected: os::now_ns(), ..report.stamps };
                 heard.steps[robot] = report.to_step();
                 let strange = "sent a report that means nothing here; is its program of another version?";
                 let understood = heard.steps[robot].is_some();
@@ -317,8 +318,17 @@ impl Team {
             *ticks += 1;
             let actions = self.policy.as_ref().map_or(&[][..], PolicySource::actions);
             let measured = &seen_at;
-            let seen =
-                Tick { tick, steps: &finished, measured, actions, stamps: &self.stamps, announced, collected, late };
+            let seen = Tick {
+                tick,
+                steps: &finished,
+                measured,
+                actions,
+                stamps: &self.stamps,
+                announced,
+                rung,
+                collected,
+                late,
+            };
             match director.tick(&seen)? {
                 Verdict::Continue => {}
                 Verdict::Over => return Ok(Outcome::Completed),

@@ -89,8 +89,10 @@ pub struct Stamps {
     pub read: u64,
     /// The robot had its own plan.
     pub planned: u64,
-    /// The robot published its report.
+    /// The robot published its report; in a peer exchange the others have its plan by then.
     pub reported: u64,
+    /// The coordinator took the report; it writes this one itself.
+    pub collected: u64,
 }
 
 /// What a robot did in a tick. Published by the robot to the coordinator; without it the tick has
@@ -110,6 +112,8 @@ pub struct Report {
     pub input: [f64; 2],
     /// True position at the end of the tick, m.
     pub next_position: [f64; 2],
+    /// Time before the QP's solvers, ns.
+    pub detect_ns: u64,
     /// Time in the QP's solvers, ns.
     pub solve_ns: u64,
     /// Time of the whole step, from having all messages to having moved, ns.
@@ -249,6 +253,7 @@ impl Report {
             position: [0.0; 2],
             input: [0.0; 2],
             next_position: [0.0; 2],
+            detect_ns: 0,
             solve_ns: 0,
             step_ns: 0,
             stamps: Stamps::default(),
@@ -267,6 +272,7 @@ impl Report {
             position: step.position.into(),
             input: step.input.into(),
             next_position: step.next_position.into(),
+            detect_ns: step.detect_ns,
             solve_ns: step.solve_ns,
             step_ns: step.step_ns,
             rows: step.rows,
@@ -291,6 +297,7 @@ impl Report {
             status: status(self.status)?,
             shielded: self.shielded == 1,
             plan,
+            detect_ns: self.detect_ns,
             solve_ns: self.solve_ns,
             step_ns: self.step_ns,
         })
@@ -325,6 +332,7 @@ mod tests {
             status: Status::Relaxed,
             shielded: true,
             plan: Prediction::from_states(&states, Position::new(9.0, -9.0)),
+            detect_ns: 987,
             solve_ns: 1234,
             step_ns: 5678,
         }
@@ -359,6 +367,6 @@ mod tests {
         assert_eq!(size_of::<Observation>(), 4 * 8 + MAX_ROBOTS * 16);
         assert_eq!(size_of::<PolicyAnswer>(), 5 * 8 + 2 * 4 + 32 + 5 * MAX_ROBOTS);
         assert_eq!(size_of::<Plan>(), 3 * 8 + 2 * 4 + 16 + 50 * 16);
-        assert_eq!(size_of::<Report>(), size_of::<Plan>() + 8 + 48 + 2 * 8 + 5 * 8 + 8);
+        assert_eq!(size_of::<Report>(), size_of::<Plan>() + 8 + 48 + 3 * 8 + 6 * 8 + 8);
     }
 }

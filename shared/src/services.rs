@@ -68,7 +68,7 @@ unsafe impl ZeroCopySend for Plan {
 }
 unsafe impl ZeroCopySend for Report {
     unsafe fn type_name() -> &'static str {
-        "vodca/Report/1"
+        "vodca/Report/2"
     }
 }
 unsafe impl ZeroCopySend for Observation {

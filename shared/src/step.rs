@@ -61,6 +61,9 @@ pub struct Step {
     pub shielded: bool,
     /// The plan published at this tick.
     pub plan: Prediction,
+    /// Time before the QP's solvers (conflicts, rows, reference, cell), ns; 0 for a controller without a
+    /// QP. Not part of what is compared.
+    pub detect_ns: u64,
     /// Time in the QP's solvers, ns; 0 for a controller without a QP. Not part of what is compared.
     pub solve_ns: u64,
     /// Time of the whole step, from having all messages to having moved, ns. Not part of what is compared.

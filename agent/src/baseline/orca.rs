@@ -147,6 +147,15 @@ impl Controller for OrcaController {
         // What it will do next is not planned: the velocity is published for one step.
         let plan = Prediction::roll_out(view.position, set_point, model.sample_time, &[input]);
         let rows = self.planes.len() as u32;
-        Decision { input, plan, rows, level: Level::Baseline, status: Status::Solved, shielded: false, solve_ns: 0 }
+        Decision {
+            input,
+            plan,
+            rows,
+            level: Level::Baseline,
+            status: Status::Solved,
+            shielded: false,
+            detect_ns: 0,
+            solve_ns: 0,
+        }
     }
 }

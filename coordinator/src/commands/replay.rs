@@ -1,9 +1,11 @@
 //! `replay`: repeats a recorded run from its own folder and compares it byte for byte.
 
 use crate::exit::{Ending, Failure, Outcome};
-use crate::in_process::run_team;
+use crate::in_process::drive;
 use crate::record::{PARAMS_FILE, SCENARIO_FILE, horizons, trajectory};
+use crate::solver_check::SolverCheck;
 use crate::stdout;
+use agent::team::Team;
 use shared::horizon_source::{HorizonSource, HorizonSpec};
 use shared::params::Params;
 use shared::scenario::Scenario;
@@ -13,13 +15,17 @@ use std::path::{Path, PathBuf};
 /// Arguments of `replay`.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
-Example:
+Examples:
   ./run.sh replay runs/20260131-120000-ex14_d-14
+  ./run.sh replay --check-solver runs/20260131-120000-ex14_d-14
 Runs the recorded scenario with the recorded parameters and horizons in this process and compares trajectory.csv
 byte for byte; says the first tick and robot that differ. Exit code 1 if any does.")]
 pub struct Args {
     /// Folder of a recorded run
     run: PathBuf,
+    /// Solve every QP a second time with Clarabel and tell the largest difference of an input
+    #[arg(long)]
+    check_solver: bool,
 }
 
 /// Why a run cannot be repeated.
@@ -61,7 +67,20 @@ pub struct Difference {
 
 /// Repeats the run and says whether it is the same.
 pub fn run(args: Args) -> Ending {
-    match replay(&args.run).map_err(Failure::broken)? {
+    let (repetition, check) = repeat(&args.run, args.check_solver).map_err(Failure::broken)?;
+    let checked = match check {
+        Some(check) => {
+            stdout::line(format_args!("{}: {check}", args.run.display()))?;
+            check.passed()
+        }
+        None => true,
+    };
+    let outcome = report(&args, repetition)?;
+    Ok(if checked { outcome } else { Outcome::Failed })
+}
+
+fn report(args: &Args, repetition: Repetition) -> Ending {
+    match repetition {
         Repetition { difference: Some(difference), .. } => {
             stdout::line(format_args!("{}: {difference}", args.run.display()))?;
             Ok(Outcome::Failed)
@@ -93,6 +112,12 @@ pub struct Repetition {
 
 /// Repeats the run in `folder` for as many ticks as it recorded and compares.
 pub fn replay(folder: &Path) -> Result<Repetition, ReplayError> {
+    Ok(repeat(folder, false)?.0)
+}
+
+/// [`replay`]; `check`: solves every QP of the repetition a second time with Clarabel and compares.
+/// Without a difference in the trajectory these are the QPs of the recorded run.
+pub fn repeat(folder: &Path, check: bool) -> Result<(Repetition, Option<SolverCheck>), ReplayError> {
     let read = |name: &str| {
         let path = folder.join(name);
         std::fs::read_to_string(&path).map_err(|source| ReplayError::Unreadable { path, source })
@@ -106,6 +131,8 @@ pub fn replay(folder: &Path) -> Result<Repetition, ReplayError> {
     let ticks = read(horizons::FILE)?.lines().count().saturating_sub(1) as u64;
     scenario.max_ticks = ticks;
     let mut text = format!("{}\n", trajectory::HEADER);
+    let build = if check { Team::checked } else { Team::new };
+    let mut team = build(&scenario, &params, scenario.seed);
     let mut positions: Vec<_> = scenario.robots.iter().map(|robot| robot.start).collect();
     if ticks > 0 {
         // What was recorded is what came out of the jitter.
@@ -117,7 +144,7 @@ pub fn replay(folder: &Path) -> Result<Repetition, ReplayError> {
             positions.iter_mut().zip(steps).for_each(|(position, step)| *position = step.next_position);
             Ok::<(), std::convert::Infallible>(())
         };
-        match run_team(&scenario, &params, |robot, tick| source.horizon(robot, tick), append) {
+        match drive(&mut team, &scenario, &params, |robot, tick| source.horizon(robot, tick), append) {
             Ok(_) => {}
             Err(never) => match never {},
         }
@@ -127,7 +154,8 @@ pub fn replay(folder: &Path) -> Result<Repetition, ReplayError> {
         trajectory::push_end(&mut text, ticks, &positions);
     }
     let robots = scenario.robots.len();
-    Ok(Repetition { ticks, whole, difference: first_difference(&recorded, &text, robots) })
+    let repetition = Repetition { ticks, whole, difference: first_difference(&recorded, &text, robots) };
+    Ok((repetition, check.then(|| SolverCheck::from(team.comparison().unwrap_or_default()))))
 }
 
 /// The first line that differs in any byte, line ends included.
@@ -172,6 +200,14 @@ mod tests {
         let repetition = replay(recorded().path()).unwrap();
         assert_eq!((repetition.difference, repetition.whole), (None, true));
         assert!(repetition.ticks > 20);
+    }
+
+    #[test]
+    fn the_qps_of_a_run_can_be_checked() {
+        let (repetition, check) = repeat(recorded().path(), true).unwrap();
+        let check = check.unwrap();
+        assert_eq!(repetition.difference, None);
+        assert!(check.problems >= 5 * repetition.ticks && check.passed(), "{check}");
     }
 
     #[test]

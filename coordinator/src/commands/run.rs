@@ -1,7 +1,7 @@
 //! `run`: a team with one process per robot.
 
 use super::run_policy::PolicyArgs;
-use crate::commands::report as page;
+use crate::commands::{replay, report as page};
 use crate::exit::{self, Ending, Failure};
 use crate::launch::Agents;
 use crate::page::recorded::Recorded;
@@ -13,6 +13,7 @@ use crate::session::Session;
 use crate::stdout;
 use crate::summary::End;
 use crate::team::Team;
+use crate::tick_parts::TickTimes;
 use crate::view::{Views, Wanted};
 use shared::exchange::Kind;
 use shared::horizon_source::{HorizonSource, HorizonSpec};
@@ -80,6 +81,10 @@ pub struct Args {
     /// Serve the scene to a browser on this machine while the team drives, best with --real-time; 0: any free port
     #[arg(long, value_name = "PORT", num_args = 0..=1, default_missing_value = "0")]
     live: Option<u16>,
+    /// When the run has ended, repeat it in this process with every QP solved by Clarabel as well, and tell
+    /// the largest difference of an input
+    #[arg(long)]
+    check_solver: bool,
     /// Print the robots' commands and wait for them to be started by hand
     #[arg(long)]
     by_hand: bool,
@@ -124,6 +129,7 @@ pub fn run(args: Args) -> Ending {
     }
     let folder = session.path().to_owned();
     let ending = play(session, views, &scenario, &params, options, &stop);
+    let ending = if args.check_solver { check_solver(&folder, ending) } else { ending };
     point_to_page(&folder, args.report)?;
     ending
 }
@@ -167,6 +173,20 @@ fn about(args: &Args, scenario: &Scenario, exchange: Kind) -> About {
     }
 }
 
+/// Repeats what was recorded with both solvers, adds what was found to the summary, and prints it. A run
+/// whose QPs differ has failed.
+fn check_solver(folder: &Path, ending: Ending) -> Ending {
+    let (repetition, check) = replay::repeat(folder, true).map_err(Failure::broken)?;
+    let Some(check) = check else { return ending };
+    if let Some(difference) = repetition.difference {
+        stdout::line(format_args!("{:<16}checked other QPs than the run's: {difference}", "solver"))?;
+        return Ok(exit::Outcome::Failed);
+    }
+    check.add_to_summary(folder).map_err(Failure::broken)?;
+    stdout::line(format_args!("{:<16}{check}", "solver"))?;
+    if check.passed() { ending } else { ending.and(Ok(exit::Outcome::Failed)) }
+}
+
 /// Starts the processes, hands their ticks to the session and says how it ended.
 fn play(
     mut session: Session,
@@ -179,7 +199,7 @@ fn play(
     let team = Team::launch(scenario, params, options, stop).map_err(Failure::broken)?;
     let mut observer = |tick: &Tick<'_>| {
         let duration = Duration::from_nanos(tick.collected.saturating_sub(tick.announced));
-        let observed = session.tick(tick.tick, tick.steps, duration);
+        let observed = session.tick(tick.tick, tick.steps, &TickTimes::from(tick));
         views.tick(tick.tick, tick.steps, duration, session.metrics());
         Ok(if observed? { Verdict::Over } else { Verdict::Continue })
     };

@@ -2,9 +2,10 @@
 
 use super::range::{Numbers, NumbersError};
 use crate::exit::{Ending, Failure, Outcome};
-use crate::in_process::run_whole;
+use crate::in_process::{run_checked, run_whole};
 use crate::progress::Progress;
 use crate::record::folder::new_file;
+use crate::solver_check::SolverCheck;
 use crate::stdout;
 use crate::text_table::TextTable;
 use crate::{parallel, record};
@@ -42,6 +43,9 @@ pub struct Args {
     /// Last tick, instead of the scenario's
     #[arg(long, value_name = "K", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
     max_ticks: Option<u64>,
+    /// Solve every QP a second time with Clarabel and tell the largest difference of an input
+    #[arg(long)]
+    check_solver: bool,
     /// The CSV to write, a new file; left out, a new file in runs/
     #[arg(long)]
     out: Option<PathBuf>,
@@ -91,9 +95,13 @@ pub fn run(args: Args) -> Ending {
     let jobs = jobs(&args, &scenario, &params).map_err(Failure::usage)?;
     let path = new_file(args.out.as_deref(), &format!("sweep-{}", scenario.name), "csv").map_err(Failure::usage)?;
     let progress = Progress::of_work(jobs.len());
-    let results =
-        parallel::map(&jobs, |job| run_whole(&job.scenario, &params, &job.source, |_| {}), || progress.advance());
+    let drive = |job: &Job| match args.check_solver {
+        true => run_checked(&job.scenario, &params, &job.source),
+        false => (run_whole(&job.scenario, &params, &job.source, |_| {}), SolverCheck::default()),
+    };
+    let (results, checks): (Vec<_>, Vec<_>) = parallel::map(&jobs, drive, || progress.advance()).into_iter().unzip();
     progress.finish();
+    let check = checks.into_iter().fold(SolverCheck::default(), SolverCheck::with);
 
     let mut table = TextTable::new(&[
         "horizon",
@@ -115,7 +123,10 @@ pub fn run(args: Args) -> Ending {
     stdout::text(table.aligned())?;
     stdout::line(verdict(&jobs, &results))?;
     stdout::line(path.display())?;
-    Ok(Outcome::Done)
+    if args.check_solver {
+        stdout::line(check)?;
+    }
+    Ok(if check.passed() { Outcome::Done } else { Outcome::Failed })
 }
 
 fn jobs(args: &Args, scenario: &Scenario, params: &Params) -> Result<Vec<Job>, HorizonSourceError> {
@@ -194,6 +205,7 @@ mod tests {
             profile: Profile::Safe,
             set: vec![],
             max_ticks: Some(3),
+            check_solver: true,
             out: Some(out.clone()),
         };
         assert_eq!(run(args).unwrap(), Outcome::Done);
@@ -214,6 +226,7 @@ mod tests {
             profile: Profile::Safe,
             set: vec![],
             max_ticks: Some(1),
+            check_solver: false,
             out: Some(out.clone()),
         };
         let Err(Failure::Usage(error)) = run(args) else { panic!("it is wrong usage") };

@@ -110,6 +110,7 @@ fn read_step(line: &str, set_point: Position, sample_time: f64) -> Option<Step> 
         status: STATUSES.into_iter().find(|&status| Some(&status_word(status)) == fields.get(9))?,
         shielded: false,
         plan: Prediction::roll_out(position, set_point, sample_time, &[input]),
+        detect_ns: 0,
         solve_ns: 0,
         step_ns: 0,
     })

@@ -41,6 +41,7 @@ pub(crate) fn steps(robots: usize, tick: u64) -> Vec<Step> {
             status: Status::Solved,
             shielded: false,
             plan: Prediction::roll_out(position, start + Position::new(5.0, 0.5), 0.2, &[input; 3]),
+            detect_ns: 300,
             solve_ns: 400,
             step_ns: 1_000,
         }
@@ -57,7 +58,7 @@ pub(crate) fn record_run(folder: &std::path::Path, scenario: &str, params: &shar
 pub(crate) fn record_ticks(folder: &std::path::Path, scenario: &str, params: &shared::params::Params, max_ticks: u64) {
     use crate::record::about::{Machine, Versions};
     use crate::record::{About, RunFolder};
-    use std::time::Duration;
+    use crate::tick_parts::TickTimes;
     let mut scenario = Scenario::resolve(Some(scenario), None).unwrap();
     scenario.max_ticks = 120;
     let about = About {
@@ -78,7 +79,7 @@ pub(crate) fn record_ticks(folder: &std::path::Path, scenario: &str, params: &sh
     let horizon = |robot, tick| Horizon::random(3, robot, tick);
     let driven = Scenario { max_ticks, ..scenario.clone() };
     crate::in_process::run_team(&driven, params, horizon, |tick, steps| {
-        session.tick(tick, steps, Duration::from_micros(5)).map(|_| ())
+        session.tick(tick, steps, &TickTimes { duration_ns: 5_000, ..TickTimes::default() }).map(|_| ())
     })
     .unwrap();
     session.finish(crate::summary::End::OutOfTicks, None).unwrap();

@@ -75,7 +75,8 @@ pub trait Exchange {
     fn next_order(&mut self, limit: Duration, hear: &mut Hear<'_>) -> Result<Option<Order>, ServiceError>;
 
     /// Publishes what this robot did; in a peer exchange its plan goes to the others first, so that
-    /// every plan of a tick is there before the tick has ended for anybody.
+    /// every plan of a tick is there before the tick has ended for anybody. Sets
+    /// [`crate::messages::Stamps::reported`].
     fn publish(&mut self, report: Report) -> Result<(), ServiceError>;
 }
 

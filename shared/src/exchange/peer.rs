@@ -2,6 +2,7 @@
 
 use super::{Clock, Exchange, Hear, Order};
 use crate::messages::{Plan, Report, kind};
+use crate::os;
 use crate::services::{Receiver, Reporter, Sender, ServiceError};
 use std::time::Duration;
 
@@ -65,10 +66,11 @@ impl Exchange for Peer {
         Ok(order)
     }
 
-    fn publish(&mut self, report: Report) -> Result<(), ServiceError> {
+    fn publish(&mut self, mut report: Report) -> Result<(), ServiceError> {
         if report.kind == kind::STEP {
             self.sender.send(report.plan)?;
         }
+        report.stamps.reported = os::now_ns();
         self.reporter.report(report)
     }
 }

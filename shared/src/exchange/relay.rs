@@ -2,6 +2,7 @@
 
 use super::{Clock, Exchange, Hear, Order};
 use crate::messages::Report;
+use crate::os;
 use crate::services::{Reporter, ServiceError};
 use std::time::Duration;
 
@@ -29,7 +30,8 @@ impl Exchange for Relay {
         })
     }
 
-    fn publish(&mut self, report: Report) -> Result<(), ServiceError> {
+    fn publish(&mut self, mut report: Report) -> Result<(), ServiceError> {
+        report.stamps.reported = os::now_ns();
         self.reporter.report(report)
     }
 }

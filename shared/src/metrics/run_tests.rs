@@ -22,6 +22,7 @@ fn step(from: Position, to: Position) -> Step {
         status: Status::Solved,
         shielded: false,
         plan: Prediction::from_states(&[from, to], to),
+        detect_ns: 0,
         solve_ns: 0,
         step_ns: 0,
     }

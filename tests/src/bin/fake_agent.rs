@@ -54,6 +54,7 @@ impl Drive for Straight {
             status: Status::Solved,
             shielded: false,
             plan: Prediction::from_states(&[position, self.position], self.set_point),
+            detect_ns: 0,
             solve_ns: 0,
             step_ns: 0,
         }
