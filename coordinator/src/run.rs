@@ -5,6 +5,7 @@
 
 use crate::clock::{Clock, Overruns};
 use crate::launch::{self, Agents, LaunchError};
+use crate::own_place::OwnPlace;
 use crate::policy::{PolicyError, PolicyOptions, PolicySource, PolicySummary};
 use crate::record::RecordError;
 use crate::roster::{PeerLost, Roster};
@@ -199,7 +200,7 @@ pub struct Team {
     roster: Roster,
     policy: Option<PolicySource>,
     hub: Hub,
-    place: OwnedPlace,
+    place: OwnPlace,
     /// What a policy observes besides the robots' own reports.
     measuring: Measuring,
     steps: Vec<Option<Step>>,
@@ -221,15 +222,6 @@ impl Measuring {
     }
 }
 
-/// Deletes the run's shared files when dropped.
-struct OwnedPlace(Place);
-
-impl Drop for OwnedPlace {
-    fn drop(&mut self) {
-        self.0.remove();
-    }
-}
-
 impl Team {
     /// Makes the exchange, writes `team.toml` and `iceoryx2.toml` into the run's folder and starts the
     /// robots. Sweeps away what earlier runs left that were killed.
@@ -240,7 +232,7 @@ impl Team {
         if !(1..=MAX_ROBOTS).contains(&robots) {
             return Err(RunError::Robots { scenario: scenario.name.clone(), robots });
         }
-        let place = OwnedPlace(Place::create()?);
+        let place = OwnPlace(Place::create()?);
         let file = TeamFile {
             version: 1,
             robots,
