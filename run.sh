@@ -28,15 +28,18 @@ case ${1-} in
 test) shift; cargo_release test --workspace "$@"; exit ;;
 [0-9]* | --scenario*) set -- run "$@" ;;
 esac
+# Only commands with a policy need its server: the embedded back-end is the heaviest build of all.
+# By itself, so that its dependencies have the same features (and are built once) in every command.
+case " $* " in
+*" --policy "* | *" --policy="* | *policy:*) server=policy-server ;;
+*) server= ;;
+esac
 case ${1-} in
 policy) build policy-server; shift; exec "$target/release/policy-server" "$@" ;;
-run)
-    case " $* " in
-    # Only runs with a policy need its server: the embedded back-end is the heaviest build of all.
-    # By itself, so that its dependencies have the same features (and are built once) in every command.
-    *" --policy "* | *" --policy="*) build policy-server ;;
-    esac
-    build coordinator agent ;;
+*) [ -z "$server" ] || build "$server" ;;
+esac
+case ${1-} in
+run) build coordinator agent ;;
 *) build coordinator ;;
 esac
 exec "$target/release/coordinator" "$@"

@@ -1,7 +1,10 @@
 //! A whole run in this process: what sweeps, comparisons and replays stand on.
 
+use crate::policy::client::{ClientError, PolicyClient};
 use crate::solver_check::SolverCheck;
+use agent::hearing::measured;
 use agent::team::Team;
+use shared::Position;
 use shared::horizon::Horizon;
 use shared::horizon_source::HorizonSource;
 use shared::metrics::{RunMetrics, RunSummary};
@@ -28,16 +31,60 @@ pub fn drive<E>(
     scenario: &Scenario,
     params: &Params,
     horizon: impl Fn(usize, u64) -> Horizon,
+    on_tick: impl FnMut(u64, &[Step]) -> Result<(), E>,
+) -> Result<RunMetrics, E> {
+    let robots = scenario.robots.len();
+    let choose = |tick, _: &[Position], horizons: &mut Vec<Horizon>| {
+        horizons.extend((0..robots).map(|robot| horizon(robot, tick)));
+        Ok(())
+    };
+    drive_chosen(team, scenario, params, choose, on_tick)
+}
+
+/// [`run_team`] with the horizons that `policy` chooses at every tick from the measured positions, moved by
+/// `params.horizon.jitter` as in a team of processes: one sample of a policy. `scenario.seed` is the seed of
+/// all that is random in it; starts are moved beforehand, by [`Scenario::jittered`].
+///
+/// # Errors
+/// What `on_tick` ends the run with, or a policy without an answer.
+pub fn run_with_policy<E: From<ClientError>>(
+    scenario: &Scenario,
+    params: &Params,
+    policy: &mut PolicyClient,
+    on_tick: impl FnMut(u64, &[Step]) -> Result<(), E>,
+) -> Result<RunMetrics, E> {
+    let (seed, noise, jitter) = (scenario.seed, params.disturbance.noise, params.horizon.jitter);
+    let choose = |tick, positions: &[Position], horizons: &mut Vec<Horizon>| {
+        let seen = positions.iter().enumerate().map(|(robot, &at)| measured(at, noise, seed, robot, tick));
+        let chosen = policy.choose(tick, seen)?.iter().enumerate();
+        horizons.extend(chosen.map(|(robot, horizon)| horizon.jittered(jitter, seed, robot, tick)));
+        Ok(())
+    };
+    drive_chosen(&mut Team::new(scenario, params, seed), scenario, params, choose, on_tick)
+}
+
+/// `choose(tick, positions, horizons)` appends the horizons of all robots, which stand at `positions` (m).
+fn drive_chosen<E>(
+    team: &mut Team,
+    scenario: &Scenario,
+    params: &Params,
+    mut choose: impl FnMut(u64, &[Position], &mut Vec<Horizon>) -> Result<(), E>,
     mut on_tick: impl FnMut(u64, &[Step]) -> Result<(), E>,
 ) -> Result<RunMetrics, E> {
     let mut metrics = RunMetrics::new(scenario, params);
+    let mut positions: Vec<Position> = scenario.robots.iter().map(|robot| robot.start).collect();
+    let mut horizons = Vec::with_capacity(positions.len());
     for tick in 0..scenario.max_ticks {
-        let steps = team.step(|robot| horizon(robot, tick));
+        horizons.clear();
+        choose(tick, &positions, &mut horizons)?;
+        let steps = team.step(|robot| horizons[robot]);
         metrics.observe(tick, steps);
         on_tick(tick, steps)?;
         if metrics.arrived_all() {
             break;
         }
+        positions.clear();
+        positions.extend(steps.iter().map(|step| step.next_position));
     }
     Ok(metrics)
 }

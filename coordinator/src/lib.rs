@@ -12,6 +12,7 @@ pub mod guarantee;
 pub mod in_process;
 pub mod latency;
 pub mod launch;
+mod own_place;
 pub mod page;
 pub mod parallel;
 pub mod policy;

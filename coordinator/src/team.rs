@@ -5,6 +5,7 @@
 
 use crate::clock::Clock;
 use crate::launch::{self, Agents};
+use crate::own_place::OwnPlace;
 use crate::policy::PolicySource;
 use crate::record::RecordError;
 use crate::roster::{PeerLost, Roster};
@@ -55,7 +56,7 @@ pub struct Team {
     roster: Roster,
     policy: Option<PolicySource>,
     hub: Hub,
-    place: OwnedPlace,
+    place: OwnPlace,
     /// What a policy observes besides the robots' own reports.
     measuring: Measuring,
     steps: Vec<Option<Step>>,
@@ -94,15 +95,6 @@ impl Director for Once<'_, '_> {
     }
 }
 
-/// Deletes the run's shared files when dropped.
-struct OwnedPlace(Place);
-
-impl Drop for OwnedPlace {
-    fn drop(&mut self) {
-        self.0.remove();
-    }
-}
-
 impl Team {
     /// Makes the exchange, writes `team.toml` and `iceoryx2.toml` into the run's folder and starts the
     /// robots. Sweeps away what earlier runs left that were killed.
@@ -113,7 +105,7 @@ impl Team {
         if !(1..=MAX_ROBOTS).contains(&robots) {
             return Err(RunError::Robots { scenario: scenario.name.clone(), robots });
         }
-        let place = OwnedPlace(Place::create()?);
+        let place = OwnPlace(Place::create()?);
         let file = TeamFile {
             version: 1,
             robots,

@@ -2,13 +2,14 @@
 
 use super::range::Numbers;
 use super::report::PAGE;
-use crate::compare::{Comparison, Contender, Job, Plan, Run, by_family, by_run, expand};
+use crate::compare::{Comparison, Contender, Contenders, Job, Plan, Run, Runs, by_family, by_run, expand, run_all};
 use crate::exit::{Ending, Failure, Outcome};
 use crate::page;
-use crate::parallel;
 use crate::progress::Progress;
 use crate::record::folder::{RecordError, RunFolder};
 use crate::stdout;
+use shared::place;
+use shared::stop::StopFlag;
 use std::path::PathBuf;
 
 /// Arguments of `compare`.
@@ -19,21 +20,24 @@ Examples:
   ./run.sh compare ex14_d ring:16 --controllers safe:fixed:20 safe:random paper:fixed:20 orca orca-rh --seeds 20
   ./run.sh compare suite:all --controllers safe:each:10,20,30,49,random --seeds 5
   ./run.sh compare suite:quick --controllers safe 'safe[vodca.turn=0,aim.angle=0]'
+  ./run.sh compare ex14_d --controllers paper:fixed:5,10,...,49 paper:random paper:policy:ex14 orca --jitter-start 0.2
   ./run.sh compare random-boxes:10000 --controllers safe:random
 Scenarios: files, built-in names, families (box:16:3:0..9 is ten of them), suite:all (every built-in one), suite:quick,
 random-boxes:COUNT (8 to 32 robots, each run with its own seed).
-Controllers: PROFILE[KEY=VALUE,...]:HORIZON; each:10,20,30,49,random is a run with each of them, all in one row; orca,
-orca:TAU, orca-rh. What has nothing random in it runs once, whatever --seeds says.
+Controllers: PROFILE[KEY=VALUE,...]:HORIZON, or HORIZON alone for the safe profile; orca, orca:TAU, orca-rh.
+HORIZON: fixed:20; fixed:5,10,...,49 is a row for each; each:10,20,30,49,random is a run with each, all in one row; random;
+policy:NAME asks a policy at every tick (NAME: an ONNX file, a policies folder or the name of one in policies/).
+What has nothing random in it runs once, whatever --seeds says; --jitter-start makes a seed mean other starts.
 Ratio, ticks and time are medians over the runs that succeeded (interval: seeded bootstrap); separations count every run.
 The folder holds runs.csv (a line per run), table.md, summary.json and report.html (charts for a browser).")]
 pub struct Args {
     /// What to run: names, files, families, suites, random-boxes:COUNT
     #[arg(value_name = "SCENARIO|SUITE", default_value = "suite:quick")]
     scenarios: Vec<String>,
-    /// PROFILE[KEY=VALUE,...]:HORIZON (safe:fixed:20, safe:random, safe:each:10,20), orca, orca:TAU, orca-rh
+    /// PROFILE[KEY=VALUE,...]:HORIZON (safe:fixed:20, safe:random, paper:policy:NAME), orca, orca:TAU, orca-rh
     #[arg(long, num_args = 1.., value_name = "SPEC",
           default_values = ["safe:fixed:20", "safe:random", "paper:fixed:20", "orca", "orca-rh"])]
-    controllers: Vec<Contender>,
+    controllers: Vec<Contenders>,
     /// Number of seeds, from 0, of whatever is random
     #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u64).range(1..=100_000), conflicts_with = "seed_list")]
     seeds: u64,
@@ -62,17 +66,22 @@ pub fn run(args: Args) -> Ending {
     }
     let plan = Plan {
         entries,
-        contenders: args.controllers,
+        contenders: args.controllers.into_iter().flat_map(|Contenders(all)| all).collect(),
         seeds: args.seed_list.map_or_else(|| (0..args.seeds).collect(), |list| list.0),
         jitter_start: args.jitter_start,
         sets: args.set,
         max_ticks: args.max_ticks,
     };
     let jobs = plan.jobs().map_err(Failure::usage)?;
+    let stop = StopFlag::install().map_err(Failure::broken)?;
+    place::sweep_leftovers(); // of comparisons with policies that were killed
     let folder = RunFolder::named(args.out.as_deref(), "compare").map_err(Failure::usage)?;
     let progress = Progress::of_work(jobs.len());
-    let runs = parallel::map(&jobs, Job::run, || progress.advance());
+    let Runs { done, failure } = run_all(&jobs, &stop, || progress.advance());
     progress.finish();
+    let planned = jobs.len();
+    let (jobs, runs): (Vec<Job>, Vec<Run>) =
+        jobs.into_iter().zip(done).filter_map(|(job, run)| Some((job, run?))).unzip();
     let comparison = Comparison::new(&plan, &jobs, &runs);
     let table = by_family(&comparison);
     // Whatever becomes of the terminal, the results are kept.
@@ -91,7 +100,14 @@ pub fn run(args: Args) -> Ending {
         folder.file("runs.csv").display(),
         folder.file(PAGE).display()
     ))?;
-    Ok(Outcome::Done)
+    if runs.len() < planned {
+        let why = if failure.is_some() { "a policy failed" } else { "asked to stop" };
+        stdout::line(format_args!(
+            "{why}: {} of {planned} runs were not done, and nothing here counts them",
+            planned - runs.len()
+        ))?;
+    }
+    failure.map_or(Ok(Outcome::Done), |error| Err(Failure::broken(error)))
 }
 
 fn write_summary(folder: &RunFolder, comparison: &Comparison) -> Result<(), RecordError> {

@@ -1,6 +1,7 @@
 //! The arguments of `run` that belong to `--policy`.
 
 use crate::exit::Failure;
+use crate::policy::found::locate;
 use crate::policy::{PolicyOptions, server_program};
 use shared::horizon::Horizon;
 use shared::policy::settings::PolicySettings;
@@ -43,14 +44,15 @@ impl PolicyArgs {
         let there = |path: &Path| {
             std::path::absolute(path)
                 .and_then(|path| path.metadata().map(|_| path))
-                .map_err(|error| Failure::usage(format!("cannot use the policy {}: {error}", path.display())))
+                .map_err(|error| Failure::usage(format!("cannot use the library {}: {error}", path.display())))
         };
+        let found = |path: &Path| locate(path).map_err(Failure::usage);
         Ok(PolicyOptions {
             program: server_program().map_err(Failure::usage)?,
             settings: PolicySettings {
                 version: 1,
-                policy: there(policy)?,
-                shadow: self.shadow.as_deref().map(there).transpose()?,
+                policy: found(policy)?,
+                shadow: self.shadow.as_deref().map(found).transpose()?,
                 sample_seed: self.stochastic.then_some(scenario.seed),
                 onnxruntime: self.onnxruntime.as_deref().map(there).transpose()?,
                 poll_ms: self.policy_poll,

@@ -1,13 +1,13 @@
 //! Who is compared: a controller, its parameters and where its horizons come from.
 
-use crate::commands::range::Numbers;
+use crate::commands::range::{Numbers, NumbersError};
 use shared::horizon_source::{HorizonSourceError, HorizonSpec};
 use shared::params::{Profile, UnknownProfile};
 use std::fmt;
 use std::str::FromStr;
 
 /// A controller with its settings: `safe:fixed:20`, `safe[vodca.turn=0]:random`, `safe:each:10,20,random`,
-/// `orca`, `orca:5`, `orca-rh`.
+/// `paper:policy:NAME`, `orca`, `orca:5`, `orca-rh`.
 #[derive(Clone, Debug)]
 pub struct Contender {
     name: String,
@@ -15,15 +15,29 @@ pub struct Contender {
     pub profile: Profile,
     /// What is changed in them, as for `--set`.
     pub sets: Vec<String>,
-    /// Where horizons come from, one run for each; a bare `random` takes the run's seed. ORCA ignores them.
-    pub horizons: Vec<HorizonSpec>,
+    /// Where horizons come from, one run for each. ORCA ignores them.
+    pub horizons: Vec<HorizonPart>,
 }
+
+/// Where the horizons of a contender's run come from.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum HorizonPart {
+    /// A table that is known before the run; a bare `random` takes the run's seed.
+    Table(HorizonSpec),
+    /// A policy, asked at every tick: an ONNX file, a policies folder, or the name of one in `policies/`.
+    Policy(String),
+}
+
+/// One or several contenders: `safe:fixed:5,10,...,49` is one for each horizon.
+#[derive(Clone, Debug)]
+pub struct Contenders(pub Vec<Contender>);
 
 /// Not a controller.
 #[derive(Debug, thiserror::Error)]
 #[error(
     "controller `{spec}`: {reason}; write PROFILE[KEY=VALUE,...]:HORIZON, for example safe:fixed:20, safe:random, \
-     safe:each:10,20,30,49 (a run with each), paper[vodca.rows=each]:fixed:20, orca, orca:TAU or orca-rh"
+     paper:fixed:5,10,...,49 (a row for each), safe:each:10,20,30,49 (a run with each, all in one row), \
+     paper:policy:NAME, paper[vodca.rows=each]:fixed:20, orca, orca:TAU or orca-rh; without a PROFILE it is safe"
 )]
 pub struct ContenderError {
     spec: String,
@@ -32,28 +46,52 @@ pub struct ContenderError {
 
 /// Where nothing else is said.
 const USUAL_HORIZON: &str = "fixed:20";
+/// What a HORIZON may start with. A spec that starts so has left its PROFILE out.
+const KINDS: [&str; 5] = ["fixed", "random", "each", "policy", "script"];
 
-impl FromStr for Contender {
+impl FromStr for Contenders {
     type Err = ContenderError;
 
     fn from_str(spec: &str) -> Result<Self, ContenderError> {
         let wrong = |reason: String| ContenderError { spec: spec.into(), reason };
-        let (profile, rest) = spec.split_at(spec.find(['[', ':']).unwrap_or(spec.len()));
-        let profile = profile.parse().map_err(|error: UnknownProfile| wrong(error.to_string()))?;
+        let (word, rest) = spec.split_at(spec.find(['[', ':']).unwrap_or(spec.len()));
+        if KINDS.contains(&word) {
+            return named(spec, Profile::Safe, Vec::new(), spec, horizons(spec).map_err(wrong)?);
+        }
+        let profile = word.parse().map_err(|error: UnknownProfile| wrong(error.to_string()))?;
         let (mut sets, rest) = overlay(rest).map_err(wrong)?;
-        let horizons = match (profile, rest.strip_prefix(':')) {
-            (_, None) if !rest.is_empty() => return Err(wrong(format!("`{rest}` after the `]`"))),
+        match (profile, rest.strip_prefix(':')) {
+            (_, None) if !rest.is_empty() => Err(wrong(format!("`{rest}` after the `]`"))),
             (Profile::Orca | Profile::OrcaRh, Some(time_horizon)) => {
                 let _: f64 = time_horizon.parse().map_err(|_| {
                     wrong(format!("ORCA has no prediction horizon, and `{time_horizon}` is not a time horizon in s"))
                 })?;
                 sets.push(format!("orca.time_horizon={time_horizon}"));
-                horizons(USUAL_HORIZON)
+                named(spec, profile, sets, USUAL_HORIZON, horizons(USUAL_HORIZON).map_err(wrong)?)
             }
-            (_, chosen) => horizons(chosen.unwrap_or(USUAL_HORIZON)),
-        };
-        Ok(Self { name: spec.into(), profile, sets, horizons: horizons.map_err(wrong)? })
+            (_, chosen) => {
+                let chosen = chosen.unwrap_or(USUAL_HORIZON);
+                named(spec, profile, sets, chosen, horizons(chosen).map_err(wrong)?)
+            }
+        }
     }
+}
+
+/// A contender for each of `rows`. One is called as it was given; several have their own HORIZON in its place.
+fn named(
+    spec: &str,
+    profile: Profile,
+    sets: Vec<String>,
+    horizon: &str,
+    rows: Vec<Vec<HorizonPart>>,
+) -> Result<Contenders, ContenderError> {
+    let several = rows.len() > 1;
+    let name = |row: &[HorizonPart]| match (several, row.first()) {
+        (true, Some(own)) => format!("{}{own}", spec.strip_suffix(horizon).unwrap_or_default()),
+        _ => spec.to_string(),
+    };
+    let contender = |horizons: Vec<_>| Contender { name: name(&horizons), profile, sets: sets.clone(), horizons };
+    Ok(Contenders(rows.into_iter().map(contender).collect()))
 }
 
 /// The settings of a leading `[KEY=VALUE,...]`, and what follows.
@@ -67,22 +105,40 @@ fn overlay(rest: &str) -> Result<(Vec<String>, &str), String> {
     }
 }
 
-/// `each:` takes numbers, ranges of them and `random`; everything else is one source of horizons.
-fn horizons(text: &str) -> Result<Vec<HorizonSpec>, String> {
-    let one = |text: &str| text.parse::<HorizonSpec>().map_err(|error: HorizonSourceError| error.to_string());
-    let Some(list) = text.strip_prefix("each:") else { return Ok(vec![one(text)?]) };
-    let mut all = Vec::new();
-    for item in list.split(',') {
-        if item == "random" {
-            all.push(HorizonSpec::Random(None));
-            continue;
+/// The rows that a HORIZON stands for. A list of numbers is always a list of runs: `fixed:` gives each a row of
+/// its own, `each:` puts all into one row (and takes `random` among them).
+fn horizons(text: &str) -> Result<Vec<Vec<HorizonPart>>, String> {
+    match text.split_once(':') {
+        Some(("policy", "")) => Err("`policy` needs a name, a folder or an ONNX file".into()),
+        Some(("policy", name)) => Ok(vec![vec![HorizonPart::Policy(name.into())]]),
+        Some(("fixed", list)) => Ok(fixed(list)?.into_iter().map(|one| vec![one]).collect()),
+        Some(("each", list)) => {
+            let (random, numbers): (Vec<&str>, Vec<&str>) = list.split(',').partition(|item| *item == "random");
+            let mut row = if numbers.is_empty() { Vec::new() } else { fixed(&numbers.join(","))? };
+            row.extend(random.iter().map(|_| HorizonPart::Table(HorizonSpec::Random(None))));
+            Ok(vec![row])
         }
-        let Numbers(numbers) = item.parse().map_err(|error: crate::commands::range::NumbersError| error.to_string())?;
-        for number in numbers {
-            all.push(one(&format!("fixed:{number}"))?);
+        _ => Ok(vec![vec![HorizonPart::Table(table(text)?)]]),
+    }
+}
+
+/// One fixed horizon for each number of `list`.
+fn fixed(list: &str) -> Result<Vec<HorizonPart>, String> {
+    let Numbers(numbers) = list.parse().map_err(|error: NumbersError| error.to_string())?;
+    numbers.into_iter().map(|number| Ok(HorizonPart::Table(table(&format!("fixed:{number}"))?))).collect()
+}
+
+fn table(text: &str) -> Result<HorizonSpec, String> {
+    text.parse().map_err(|error: HorizonSourceError| error.to_string())
+}
+
+impl fmt::Display for HorizonPart {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Table(spec) => spec.fmt(f),
+            Self::Policy(name) => write!(f, "policy:{name}"),
         }
     }
-    Ok(all)
 }
 
 impl fmt::Display for Contender {
@@ -96,13 +152,29 @@ mod tests {
     use super::*;
     use shared::params::{ControllerKind, Params};
 
+    fn all(spec: &str) -> Vec<Contender> {
+        spec.parse::<Contenders>().unwrap().0
+    }
+
     fn params(spec: &str) -> Params {
-        let contender: Contender = spec.parse().unwrap();
+        let contender = all(spec).remove(0);
         Params::resolve(contender.profile, "-", &toml::Table::new(), &contender.sets).unwrap()
     }
 
+    /// The horizons of the only contender.
     fn horizons(spec: &str) -> Vec<String> {
-        spec.parse::<Contender>().unwrap().horizons.iter().map(HorizonSpec::to_string).collect()
+        let [only] = <[Contender; 1]>::try_from(all(spec)).unwrap();
+        assert_eq!(only.to_string(), spec);
+        only.horizons.iter().map(HorizonPart::to_string).collect()
+    }
+
+    /// All contenders by name.
+    fn names(spec: &str) -> Vec<String> {
+        let names = |contender: &Contender| {
+            assert_eq!(contender.horizons.len(), 1);
+            contender.to_string()
+        };
+        all(spec).iter().map(names).collect()
     }
 
     #[test]
@@ -112,6 +184,7 @@ mod tests {
         assert_eq!(params("orca").controller.kind, ControllerKind::Orca);
         assert_eq!(params("orca:2").orca.time_horizon, 2.0);
         assert_eq!((params("orca-rh").orca.time_horizon, params("orca-rh").orca.aim), (1.0, 0.35));
+        assert_eq!((params("random"), params("policy:mine")), (Params::safe(), Params::safe()));
     }
 
     #[test]
@@ -123,11 +196,24 @@ mod tests {
     }
 
     #[test]
-    fn each_is_a_run_per_horizon_and_a_plain_list_one_horizon_per_robot() {
+    fn each_is_a_run_per_horizon_in_one_row() {
         assert_eq!(horizons("safe:each:10,20,random"), ["fixed:10", "fixed:20", "random"]);
-        assert_eq!(horizons("safe:each:3..5"), ["fixed:3", "fixed:4", "fixed:5"]);
-        assert_eq!(horizons("safe:fixed:10,20"), ["fixed:10,20"]);
-        assert_eq!(horizons("safe"), ["fixed:20"]);
+        assert_eq!(horizons("each:random,3..5,10"), ["fixed:3", "fixed:4", "fixed:5", "fixed:10", "random"]);
+    }
+
+    #[test]
+    fn a_list_is_a_contender_for_each_horizon() {
+        assert_eq!(names("safe:fixed:10,20"), ["safe:fixed:10", "safe:fixed:20"]);
+        assert_eq!(names("paper[vodca.rows=each]:fixed:5,6,...,8")[3], "paper[vodca.rows=each]:fixed:8");
+        assert_eq!(names("fixed:5,10,...,49").len(), 10);
+        assert_eq!((names("safe"), names("fixed:20")), (vec!["safe".into()], vec!["fixed:20".to_string()]));
+    }
+
+    #[test]
+    fn a_policy_is_named_by_a_name_a_folder_or_a_file() {
+        assert_eq!(horizons("paper:policy:policies/ex14"), ["policy:policies/ex14"]);
+        assert_eq!(horizons("safe[horizon.jitter=0]:policy:a:b.onnx"), ["policy:a:b.onnx"]);
+        assert_eq!(horizons("policy:box"), ["policy:box"]);
     }
 
     #[test]
@@ -135,15 +221,18 @@ mod tests {
         let cases = [
             ("orcas", "unknown profile `orcas`"),
             ("safe:fixed:99", "horizon 99 is outside 1..=49"),
-            ("safe:each:10,x", "`x` is not a list of whole numbers"),
+            ("safe:each:10,x", "`10,x` is not a list of whole numbers"),
             ("safe:each:0", "horizon 0 is outside"),
             ("orca:fixed:20", "ORCA has no prediction horizon"),
             ("safe[vodca.turn=0:fixed:20", "the `[` is not closed"),
             ("safe[vodca.turn]:random", "`vodca.turn` is not KEY=VALUE"),
             ("safe[vodca.turn=0]random", "`random` after the `]`"),
+            ("paper:policy:", "`policy` needs a name"),
+            ("fixed:5,10,...,50", "horizon 50 is outside 1..=49"),
+            ("fixed:", "is not a list of whole numbers"),
         ];
         for (spec, reason) in cases {
-            let message = spec.parse::<Contender>().unwrap_err().to_string();
+            let message = spec.parse::<Contenders>().unwrap_err().to_string();
             assert!(message.contains(reason) && message.contains("safe:each:10,20,30,49"), "{message}");
         }
     }

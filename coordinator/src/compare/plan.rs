@@ -1,6 +1,9 @@
 //! Which runs a comparison consists of. Everything that can be wrong is found before the first of them.
 
+use super::contender::HorizonPart;
 use super::{Contender, Entry};
+use crate::policy::client::ClientError;
+use crate::policy::found::{FindError, FoundPolicy};
 use shared::horizon_source::{HorizonSource, HorizonSourceError, HorizonSpec};
 use shared::params::{ControllerKind, Params};
 use shared::scenario::{Scenario, ScenarioError, SetupError, set_up};
@@ -15,9 +18,7 @@ pub enum CompareError {
     #[error(transparent)]
     Scenario(#[from] ScenarioError),
     /// A horizon.
-    #[error(
-        "controller `{contender}` in {scenario}: {source}; for a run with each of them write each: in place of fixed:"
-    )]
+    #[error("controller `{contender}` in {scenario}: {source}")]
     Horizon {
         /// As given.
         contender: String,
@@ -26,6 +27,12 @@ pub enum CompareError {
         /// What is wrong with it.
         source: HorizonSourceError,
     },
+    /// A policy is not there.
+    #[error(transparent)]
+    Policy(#[from] FindError),
+    /// A policy for another number of robots.
+    #[error(transparent)]
+    Client(#[from] ClientError),
 }
 
 /// What is compared.
@@ -57,7 +64,16 @@ pub struct Job {
     /// Where the horizons come from, for tables; `-` where there are none.
     pub horizon: String,
     pub(super) params: Params,
-    pub(super) source: HorizonSource,
+    pub(super) source: Source,
+}
+
+/// Where the horizons of a job come from.
+#[derive(Clone, Debug)]
+pub(super) enum Source {
+    /// Known before the run.
+    Table(HorizonSource),
+    /// Asked at every tick.
+    Policy(FoundPolicy),
 }
 
 impl Plan {
@@ -76,12 +92,7 @@ impl Plan {
                     let own = [scenario.seed];
                     for &seed in if once { &own[..] } else { &self.seeds } {
                         let scenario = self.seeded(&scenario, &params, seed)?;
-                        let source = HorizonSource::new(horizon, scenario.robots.len(), seed, params.horizon.jitter)
-                            .map_err(|source| CompareError::Horizon {
-                                contender: contender.to_string(),
-                                scenario: scenario.name.clone(),
-                                source,
-                            })?;
+                        let source = self.source(contender, horizon, &scenario, &params)?;
                         let horizon = match params.controller.kind {
                             ControllerKind::Vodca => horizon.to_string(),
                             ControllerKind::Orca => "-".into(),
@@ -95,13 +106,38 @@ impl Plan {
         Ok(jobs)
     }
 
+    fn source(
+        &self,
+        contender: &Contender,
+        horizon: &HorizonPart,
+        scenario: &Scenario,
+        params: &Params,
+    ) -> Result<Source, CompareError> {
+        match horizon {
+            HorizonPart::Policy(name) => {
+                let policy = FoundPolicy::find(name)?;
+                policy.must_fit(scenario)?;
+                Ok(Source::Policy(policy))
+            }
+            HorizonPart::Table(spec) => {
+                HorizonSource::new(spec, scenario.robots.len(), scenario.seed, params.horizon.jitter)
+                    .map(Source::Table)
+                    .map_err(|source| CompareError::Horizon {
+                        contender: contender.to_string(),
+                        scenario: scenario.name.clone(),
+                        source,
+                    })
+            }
+        }
+    }
+
     /// Whether another seed gives another run.
-    fn is_random(&self, params: &Params, horizon: &HorizonSpec) -> bool {
+    fn is_random(&self, params: &Params, horizon: &HorizonPart) -> bool {
         let disturbance = &params.disturbance;
         let own = match params.controller.kind {
             ControllerKind::Vodca => match horizon {
-                HorizonSpec::Script(_) => false, // never jittered
-                _ => params.horizon.jitter > 0 || *horizon == HorizonSpec::Random(None),
+                HorizonPart::Table(HorizonSpec::Script(_)) => false, // never jittered
+                _ => params.horizon.jitter > 0 || *horizon == HorizonPart::Table(HorizonSpec::Random(None)),
             },
             ControllerKind::Orca => params.orca.push > 0.0,
         };
@@ -125,12 +161,14 @@ impl Plan {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::compare::expand;
+    use crate::compare::{Contenders, expand};
+    use shared::policy::contract::Contract;
+    use shared::policy::onnx::{ActorGraph, Dense};
 
     fn runs(contender: &str, scenario: &str, change: impl Fn(&mut Plan)) -> Result<Vec<(String, u64)>, String> {
         let mut plan = Plan {
             entries: expand(scenario).unwrap(),
-            contenders: vec![contender.parse().unwrap()],
+            contenders: contender.parse::<Contenders>().unwrap().0,
             seeds: vec![0, 1, 2],
             jitter_start: 0.0,
             sets: vec![],
@@ -167,7 +205,10 @@ mod tests {
     fn a_contenders_own_settings_win() {
         let plan = Plan {
             entries: expand("two_setpoint").unwrap(),
-            contenders: vec!["safe[vodca.turn=0.1]".parse().unwrap(), "safe".parse().unwrap()],
+            contenders: ["safe[vodca.turn=0.1]", "safe"]
+                .iter()
+                .flat_map(|c| c.parse::<Contenders>().unwrap().0)
+                .collect(),
             seeds: vec![0],
             jitter_start: 0.0,
             sets: vec!["vodca.turn=0.2".into()],
@@ -179,12 +220,39 @@ mod tests {
     }
 
     #[test]
-    fn a_list_that_does_not_fit_is_answered_with_each() {
-        let message = runs("safe:fixed:10,20,30,49", "two_setpoint", |_| ()).unwrap_err();
-        assert!(message.starts_with("controller `safe:fixed:10,20,30,49` in two_setpoint:"), "{message}");
-        assert!(
-            message.contains("4 horizons for 2 robots") && message.ends_with("each: in place of fixed:"),
-            "{message}"
-        );
+    fn a_script_that_does_not_fit_and_a_policy_that_is_not_there_are_named() {
+        let place = tempfile::tempdir().unwrap();
+        let script = place.path().join("three.csv");
+        std::fs::write(&script, "0,9,9,9\n").unwrap();
+        let contender = format!("safe:script:{}", script.display());
+        let message = runs(&contender, "two_setpoint", |_| ()).unwrap_err();
+        assert!(message.starts_with(&format!("controller `{contender}` in two_setpoint:")), "{message}");
+        let message = runs("paper:policy:nowhere", "two_setpoint", |_| ()).unwrap_err();
+        assert!(message.starts_with("there is no policy nowhere"), "{message}");
+    }
+
+    #[test]
+    fn a_policy_must_be_for_the_number_of_robots() {
+        let place = tempfile::tempdir().unwrap();
+        let file = place.path().join("fourteen.onnx");
+        let layer = |inputs: usize, outputs: usize| Dense {
+            inputs,
+            outputs,
+            weight: vec![0.0; inputs * outputs],
+            bias: vec![0.0; outputs],
+        };
+        let graph = ActorGraph {
+            hidden: vec![layer(28, 8)],
+            mean: layer(8, 14),
+            log_std: None,
+            log_std_bounds: (-20.0, 2.0),
+            metadata: std::collections::BTreeMap::new(),
+        };
+        std::fs::write(&file, graph.write()).unwrap();
+        std::fs::write(file.with_extension("json"), Contract::standard(14, false).to_json()).unwrap();
+        let contender = format!("paper:policy:{}", file.display());
+        assert_eq!(runs(&contender, "ex14_d", |_| ()).unwrap(), [(contender.replace("paper:", ""), 0)]);
+        let message = runs(&contender, "two_setpoint", |_| ()).unwrap_err();
+        assert!(message.contains("is for 14 robots and two_setpoint has 2"), "{message}");
     }
 }

@@ -101,12 +101,13 @@ pub fn by_run(plan: &Plan, jobs: &[Job], runs: &[Run]) -> TextTable {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::compare::{Job, expand};
+    use crate::compare::{Contenders, expand, run_all};
+    use shared::stop::StopFlag;
 
     fn plan(scenarios: &[&str], contenders: &[&str], max_ticks: Option<u64>) -> Plan {
         Plan {
             entries: scenarios.iter().flat_map(|spec| expand(spec).unwrap()).collect(),
-            contenders: contenders.iter().map(|spec| spec.parse().unwrap()).collect(),
+            contenders: contenders.iter().flat_map(|spec| spec.parse::<Contenders>().unwrap().0).collect(),
             seeds: vec![0, 1],
             jitter_start: 0.0,
             sets: vec![],
@@ -117,7 +118,7 @@ mod tests {
     /// The lines of the runs without the two times at their end.
     fn runs(plan: &Plan) -> Vec<String> {
         let jobs = plan.jobs().unwrap();
-        let runs: Vec<Run> = jobs.iter().map(Job::run).collect();
+        let runs: Vec<Run> = run_all(&jobs, &StopFlag::default(), || ()).done.into_iter().flatten().collect();
         let csv = by_run(plan, &jobs, &runs).csv();
         csv.lines().map(|line| line.rsplitn(3, ',').last().unwrap().to_string()).collect()
     }
@@ -126,7 +127,7 @@ mod tests {
     fn every_controller_gets_a_row_per_family_and_one_for_all() {
         let plan = plan(&["rand8o0_s0", "rand8o0_s1", "two_setpoint"], &["safe:each:10,20,random", "orca-rh"], Some(4));
         let jobs = plan.jobs().unwrap();
-        let runs: Vec<Run> = jobs.iter().map(Job::run).collect();
+        let runs: Vec<Run> = run_all(&jobs, &StopFlag::default(), || ()).done.into_iter().flatten().collect();
         let text = by_family(&Comparison::new(&plan, &jobs, &runs)).csv();
         let firsts: Vec<&str> = text.lines().skip(1).map(|line| line.split(",-").next().unwrap()).collect();
         // The jitter of the safe profile makes fixed horizons random too: two seeds each.

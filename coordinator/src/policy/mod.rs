@@ -1,7 +1,9 @@
 //! Horizons from a policy server: asks it before every tick, waits within bounds, and bridges its
 //! absence. A run never ends because of it.
 
+pub mod client;
 mod fallback;
+pub mod found;
 mod record;
 mod server;
 mod summary;

@@ -90,12 +90,17 @@ impl ServerProcess {
     /// An error when it has ended or `deadline` has passed.
     pub(super) fn must_live(&mut self, deadline: Instant) -> Result<(), ServerError> {
         if let Ok(Some(status)) = self.child.try_wait() {
-            let said = fs::read_to_string(&self.log).unwrap_or_default();
-            let said = said.lines().rev().find(|line| !line.trim().is_empty()).unwrap_or("it said nothing");
+            let said = self.last_line().unwrap_or_else(|| "it said nothing".into());
             let how = launch::ending(status);
-            return Err(ServerError::Ended { how, said: said.trim().into(), log: self.log.clone() });
+            return Err(ServerError::Ended { how, said, log: self.log.clone() });
         }
         if Instant::now() > deadline { Err(ServerError::NotReady(self.log.clone())) } else { Ok(()) }
+    }
+
+    /// The last thing it said; `None`: nothing.
+    pub(super) fn last_line(&self) -> Option<String> {
+        let said = fs::read_to_string(&self.log).unwrap_or_default();
+        said.lines().map(str::trim).rfind(|line| !line.is_empty()).map(String::from)
     }
 
     /// Asks it to end, waits for the grace time, kills what is left.
