@@ -60,6 +60,9 @@ pub struct Episodes {
     /// Number of the first episode: a session can go on where another one stopped.
     #[serde(default)]
     pub first: u64,
+    /// After so many episodes they begin again with the first: an evaluation repeats itself.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cycle: Option<u64>,
     /// A generated layout less its seed (`box:8:3`): every episode has a layout of its own.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub family: Option<String>,
@@ -71,7 +74,8 @@ const LAYOUTS: u64 = 1_000_000;
 impl Episodes {
     /// Number of the episode with `epoch` ([`FIRST_EPOCH`] and on).
     pub fn number(&self, epoch: u64) -> u64 {
-        self.first + epoch.saturating_sub(FIRST_EPOCH)
+        let played = epoch.saturating_sub(FIRST_EPOCH);
+        self.first + self.cycle.map_or(played, |cycle| played % cycle.max(1))
     }
 
     /// The layout of the episode with `seed`; `scenario` is that of a run without a family.

@@ -46,6 +46,12 @@ pub struct Args {
     /// Read rounds from standard input, `NUMBER EPISODES [SHA256]` a line, and write a shard for each
     #[arg(long, conflicts_with = "episodes")]
     rounds_from_stdin: bool,
+    /// Begin again with the first episode after so many: an evaluation
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    cycle: Option<u64>,
+    /// Only play and count: write no shards
+    #[arg(long)]
+    discard: bool,
     /// Folder of the shards, new or empty
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
@@ -93,7 +99,12 @@ pub fn run(args: Args) -> Ending {
     scenario.max_ticks = args.max_ticks.unwrap_or(scenario.max_ticks);
     HorizonSource::new(&args.horizon, scenario.robots.len(), args.seed, params.horizon.jitter)
         .map_err(Failure::usage)?;
-    let episodes = Episodes { start_jitter: args.start_jitter, first: args.first, family: family.map(str::to_owned) };
+    let episodes = Episodes {
+        start_jitter: args.start_jitter,
+        first: args.first,
+        cycle: args.cycle,
+        family: family.map(str::to_owned),
+    };
     episodes.scenario(&scenario, &params, args.seed).map_err(Failure::usage)?; // an impossible one is told now
     let out = RunFolder::at(&args.out).map_err(Failure::usage)?;
     // What a run needs in its folder lies beside the shards.
@@ -123,7 +134,8 @@ pub fn run(args: Args) -> Ending {
         }
         Ok(())
     };
-    let Some(mut recorder) = Recorder::new(&params, about, orders, args.out.clone(), until, &mut written) else {
+    let keep = (!args.discard).then(|| args.out.clone());
+    let Some(mut recorder) = Recorder::new(&params, about, orders, keep, until, &mut written) else {
         return Ok(exit::Outcome::Done);
     };
     let team = Team::launch(&scenario, &params, options, &stop).map_err(Failure::broken)?;

@@ -30,11 +30,11 @@ pub struct Played {
     pub path: f64,
 }
 
-/// A shard that was written.
+/// A round that was played.
 #[derive(Clone, Debug)]
 pub struct Written {
-    /// Where.
-    pub path: PathBuf,
+    /// Its shard, if one is kept.
+    pub path: Option<PathBuf>,
     /// Its episodes.
     pub played: Vec<Played>,
     /// From its first tick to its last, s.
@@ -57,7 +57,8 @@ pub enum Until {
 pub struct Recorder<'a> {
     params: &'a Params,
     orders: Orders,
-    out: PathBuf,
+    /// Folder of the shards; `None`: nothing is kept.
+    out: Option<PathBuf>,
     until: Until,
     written: &'a mut dyn FnMut(&Written) -> Result<(), RecordError>,
     round: Round,
@@ -84,13 +85,13 @@ struct Running {
 }
 
 impl<'a> Recorder<'a> {
-    /// Records rounds as `orders` say into the folder `out`. `written` hears of every shard. `None`: there
+    /// Records rounds as `orders` say into the folder `out`, if there is one. `written` hears of every shard. `None`: there
     /// is nothing to do.
     pub fn new(
         params: &'a Params,
         about: About,
         mut orders: Orders,
-        out: PathBuf,
+        out: Option<PathBuf>,
         until: Until,
         written: &'a mut dyn FnMut(&Written) -> Result<(), RecordError>,
     ) -> Option<Self> {
@@ -117,11 +118,11 @@ impl<'a> Recorder<'a> {
     fn write_round(&mut self) -> Result<(), RecordError> {
         let empty = Shard::new(self.shard.about.clone());
         let shard = std::mem::replace(&mut self.shard, empty);
-        if shard.rows() == 0 {
-            return Ok(());
+        let name = format!("{:06}.{}", self.round.number, shared::rollout::ENDING);
+        let path = self.out.as_ref().map(|out| out.join(name));
+        if let Some(path) = &path {
+            shard.write(path).map_err(|error| RecordError::Rollout { reason: error.to_string() })?;
         }
-        let path = self.out.join(format!("{:06}.{}", self.round.number, shared::rollout::ENDING));
-        shard.write(&path).map_err(|error| RecordError::Rollout { reason: error.to_string() })?;
         let seconds = self.started.elapsed().as_secs_f64();
         (self.written)(&Written { path, played: std::mem::take(&mut self.played), seconds })
     }
@@ -188,6 +189,9 @@ impl Director for Recorder<'_> {
         };
         let last = played == now.max_ticks;
         let number = now.number;
+        if self.out.is_none() {
+            return Ok(if judgement.collided || enough { Verdict::Over } else { Verdict::Continue });
+        }
         self.row(tick, &judgement, (last || enough) && !judgement.collided, number);
         Ok(if judgement.collided || enough { Verdict::Over } else { Verdict::Continue })
     }

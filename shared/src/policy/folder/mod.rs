@@ -160,6 +160,19 @@ impl PolicyFolder {
         Ok(version)
     }
 
+    /// Removes the oldest versions beyond `keep`; the current one and its predecessor always stay.
+    pub fn prune(&self, keep: usize) -> Result<(), FolderError> {
+        let versions = self.versions()?;
+        let current = self.current()?.and_then(|current| versions.iter().position(|version| *version == current));
+        let oldest_needed = current.map_or(usize::MAX, |current| current.saturating_sub(1));
+        let surplus = versions.len().saturating_sub(keep.max(2)).min(oldest_needed);
+        for version in &versions[..surplus] {
+            let path = self.root.join(version.to_string());
+            fs::remove_dir_all(&path).map_err(failed("remove", &path))?;
+        }
+        Ok(())
+    }
+
     /// [`PolicyFolder::add`], then [`PolicyFolder::set_current`].
     pub fn publish(&self, model: &[u8], contract: &Contract, reference: Option<&str>) -> Result<Version, FolderError> {
         let version = self.add(model, contract, reference)?;
@@ -246,6 +259,20 @@ mod tests {
         folder.set_current(second).unwrap();
         assert_eq!(folder.current().unwrap(), Some(second));
         assert!(folder.set_current(Version(9)).unwrap_err().to_string().contains("there is no version v000009"));
+    }
+
+    #[test]
+    fn the_oldest_versions_go_and_the_current_one_and_its_predecessor_stay() {
+        let (_place, folder) = folder();
+        let contract = Contract::standard(2, true);
+        for model in [b"1", b"2", b"3", b"4", b"5"] {
+            folder.publish(model, &contract, None).unwrap();
+        }
+        folder.prune(3).unwrap();
+        assert_eq!(folder.versions().unwrap(), [Version(3), Version(4), Version(5)]);
+        folder.set_current(Version(4)).unwrap();
+        folder.prune(0).unwrap();
+        assert_eq!(folder.versions().unwrap(), [Version(3), Version(4), Version(5)]);
     }
 
     #[test]
