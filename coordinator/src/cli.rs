@@ -1,6 +1,8 @@
 //! The command line: one subcommand per file of `commands/`.
 
-use crate::commands::{compare, figures, golden, params, replay, report, rollout, run, scenario, sweep, verify};
+use crate::commands::{
+    compare, evaluate, figures, golden, params, replay, report, rollout, run, scenario, search, sweep, verify,
+};
 use crate::exit::Ending;
 use clap::{Parser, Subcommand};
 
@@ -31,6 +33,10 @@ enum Command {
     Sweep(sweep::Args),
     /// Compare controllers over scenarios and seeds in this process
     Compare(compare::Args),
+    /// Put a policy beside fixed, random and searched horizons
+    Evaluate(evaluate::Args),
+    /// Search the best constant horizon per robot
+    Search(search::Args),
     /// Check the files of reference results in a folder
     Golden(golden::Args),
     /// Repeat a recorded run from its own folder and compare it byte for byte
@@ -56,6 +62,8 @@ impl Cli {
             Command::Run(args) => run::run(args),
             Command::Sweep(args) => sweep::run(args),
             Command::Compare(args) => compare::run(args),
+            Command::Evaluate(args) => evaluate::run(args),
+            Command::Search(args) => search::run(args),
             Command::Golden(args) => golden::run(args),
             Command::Replay(args) => replay::run(args),
             Command::Verify(args) => verify::run(args),

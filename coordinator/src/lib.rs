@@ -22,6 +22,7 @@ pub mod report;
 pub mod rollout;
 pub mod roster;
 pub mod run;
+pub mod search;
 pub mod session;
 pub mod solver_check;
 pub mod stdout;

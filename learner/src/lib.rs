@@ -22,6 +22,7 @@ pub mod settings;
 mod small_problem_tests;
 pub mod squashed;
 pub mod temperature;
+pub mod train;
 
 pub use actor::Actor;
 pub use replay::Transition;

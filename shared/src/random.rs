@@ -30,6 +30,8 @@ pub enum Use {
     Resample = 10,
     /// Seeds of the episodes of a session.
     Episode = 11,
+    /// Draws of a search.
+    Search = 12,
     /// The learner's first weights, batches and action noise.
     Learning = 20,
 }

@@ -1,6 +1,7 @@
 //! The subcommands: each file holds one command's arguments and its work.
 
 pub mod compare;
+pub mod evaluate;
 pub mod figures;
 pub mod golden;
 pub mod params;
@@ -11,5 +12,6 @@ pub mod rollout;
 pub mod run;
 pub mod run_policy;
 pub mod scenario;
+pub mod search;
 pub mod sweep;
 pub mod verify;

@@ -77,6 +77,13 @@ impl FromStr for Contenders {
     }
 }
 
+impl Contender {
+    /// `profile` as it is, with horizons from `horizon`.
+    pub fn new(name: &str, profile: Profile, horizon: HorizonPart) -> Self {
+        Self { name: name.into(), profile, sets: Vec::new(), horizons: vec![horizon] }
+    }
+}
+
 /// A contender for each of `rows`. One is called as it was given; several have their own HORIZON in its place.
 fn named(
     spec: &str,

@@ -1,0 +1,395 @@
+//! Training: the whole loop from rollouts by real robot processes to a better actor in the policy server.
+//!
+//! A round: a session of robot processes plays episodes with the newest actor while the learner updates
+//! on what was played before; then the round's transitions are remembered, the new actor is published,
+//! and the sessions' policy servers swap it in. Which actor played what depends on the plan alone, not
+//! on who was quicker, so a training can be repeated and resumed exactly.
+
+pub mod command;
+pub mod curve;
+pub mod plan;
+pub mod score;
+pub mod session;
+pub mod state;
+
+use crate::export::{ExportError, export};
+use crate::{Learner, Transition};
+use curve::{Curve, CurveError, Point};
+use plan::Plan;
+use score::Score;
+use session::{Round, Session, SessionError};
+use shared::Position;
+use shared::policy::contract::Contract;
+use shared::policy::digest::sha256;
+use shared::policy::folder::{FolderError, PolicyFolder, resolve};
+use shared::rollout::{RolloutError, Shard};
+use shared::scenario::{Scenario, SetupError, set_up};
+use shared::stop::StopFlag;
+use state::{Best, State, StateError};
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+/// Versions of the actor that are kept beside the best one.
+const VERSIONS: usize = 3;
+/// Layouts of a family that are looked at for the bounds of its coordinates.
+const LOOKED_AT: u64 = 50;
+/// States whose answers an actor is checked against before it serves.
+const REFERENCE_STATES: usize = 16;
+
+/// Why training cannot go on.
+#[derive(Debug, thiserror::Error)]
+pub enum TrainError {
+    /// The scenario or the parameters.
+    #[error(transparent)]
+    Setup(#[from] SetupError),
+    /// A session of robots.
+    #[error(transparent)]
+    Session(#[from] SessionError),
+    /// What it recorded.
+    #[error(transparent)]
+    Rollout(#[from] RolloutError),
+    /// The actor.
+    #[error(transparent)]
+    Export(#[from] ExportError),
+    /// The policies folder.
+    #[error(transparent)]
+    Folder(#[from] FolderError),
+    /// The state of the training.
+    #[error(transparent)]
+    State(#[from] StateError),
+    /// The curves.
+    #[error(transparent)]
+    Curve(#[from] CurveError),
+    /// The profile's name.
+    #[error(transparent)]
+    Profile(#[from] shared::params::UnknownProfile),
+}
+
+/// How much is trained.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Budget {
+    /// Most training episodes.
+    pub episodes: Option<u64>,
+    /// Most updates.
+    pub updates: Option<u64>,
+    /// Most wall time of this call.
+    pub time: Option<Duration>,
+}
+
+/// What a watcher is told after every round.
+#[derive(Clone, Copy, Debug)]
+pub struct Progress<'a> {
+    /// Rounds, episodes, ticks so far.
+    pub state: &'a State,
+    /// Updates so far.
+    pub updates: u64,
+    /// This round.
+    pub point: &'a Point,
+}
+
+/// A training under way.
+pub struct Trainer {
+    plan: Plan,
+    out: PathBuf,
+    learner: Learner,
+    contract: Contract,
+    folder: PolicyFolder,
+    /// SHA-256 of the newest published actor.
+    published: String,
+    state: State,
+    rollouts: Session,
+    evaluation: Session,
+    curve: Curve,
+    /// Positions the actor was seen at, for its reference set.
+    reference: Vec<Vec<f64>>,
+}
+
+impl Trainer {
+    /// Begins a training in the folder `out`, which must be new or empty: plays the warm-up and starts
+    /// the sessions.
+    pub fn begin(plan: Plan, out: &Path, stop: &StopFlag) -> Result<Option<Self>, TrainError> {
+        state::prepare(out, &plan)?;
+        let scenario = layouts(&plan)?;
+        let robots = scenario[0].robots.len();
+        let learner = Learner::new(2 * robots, robots, plan.settings.clone(), plan.seed);
+        let mut trainer = Self::start(plan, out, learner, State::default(), &scenario)?;
+        let arguments = [trainer.rollout_arguments(0), ["--horizon".into(), "random".into()].into()].concat();
+        let mut warm_up = Session::start(&arguments, &out.join("warm-up"))?;
+        warm_up.order(0, trainer.plan.warm_up_episodes, None)?;
+        let Some(round) = warm_up.answer(stop)? else { return Ok(None) };
+        trainer.take(&round)?;
+        Ok(Some(trainer))
+    }
+
+    /// Goes on where the newest checkpoint in `out` stands.
+    pub fn resume(out: &Path) -> Result<Self, TrainError> {
+        let (plan, learner, state) = state::load(out)?;
+        let scenario = layouts(&plan)?;
+        Self::start(plan, out, learner, state, &scenario)
+    }
+
+    fn start(plan: Plan, out: &Path, learner: Learner, state: State, layouts: &[Scenario]) -> Result<Self, TrainError> {
+        let contract = contract(&plan, layouts);
+        let folder = PolicyFolder::new(out.join("policy"));
+        let reference = state.reference.clone();
+        export(learner.actor(), &contract, &reference, &folder)?;
+        let published = digest_of(&folder)?;
+        let sessions = out.join("sessions");
+        let run = state::number_of_sessions(&sessions);
+        let policy = ["--policy".to_owned(), folder.root().display().to_string(), "--policy-poll".into(), "10".into()];
+        // Episodes of the rollouts go on; the warm-up's had a seed of their own.
+        let mut arguments = rollout_arguments(&plan, 1);
+        arguments.extend(policy.clone());
+        arguments.extend(["--stochastic".into(), "--first".into(), state.episodes.to_string()]);
+        let rollouts = Session::start(&arguments, &sessions.join(format!("{run:03}-rollouts")))?;
+        let mut arguments = plan.session_arguments();
+        arguments.extend(policy);
+        arguments.extend(["--discard".into(), "--after-arrival".into(), "0".into()]);
+        arguments.extend(["--cycle".into(), plan.evaluation_episodes.to_string()]);
+        arguments.extend(["--start-jitter".into(), plan.evaluation_jitter.to_string()]);
+        arguments.extend(["--seed".into(), shared::random::episode_seed(plan.seed, 3).to_string()]);
+        let evaluation = Session::start(&arguments, &sessions.join(format!("{run:03}-evaluation")))?;
+        let curve = Curve::open(out, learner.updates())?;
+        Ok(Self {
+            plan,
+            out: out.to_owned(),
+            learner,
+            contract,
+            folder,
+            published,
+            state,
+            rollouts,
+            evaluation,
+            curve,
+            reference,
+        })
+    }
+
+    fn rollout_arguments(&self, stream: u64) -> Vec<String> {
+        rollout_arguments(&self.plan, stream)
+    }
+
+    /// Trains until the budget is spent or somebody asks to stop, and leaves a checkpoint. `watch` hears of
+    /// every round.
+    pub fn train(
+        &mut self,
+        budget: &Budget,
+        stop: &StopFlag,
+        watch: &mut dyn FnMut(&Progress<'_>),
+    ) -> Result<(), TrainError> {
+        let start = Instant::now();
+        let spent = |trainer: &Self| {
+            budget.episodes.is_some_and(|most| trainer.state.episodes >= most)
+                || budget.updates.is_some_and(|most| trainer.learner.updates() >= most)
+                || budget.time.is_some_and(|most| start.elapsed() >= most)
+        };
+        while !spent(self) && !stop.is_set() {
+            let point = self.round()?;
+            self.curve.add(&point)?;
+            watch(&Progress { state: &self.state, updates: self.learner.updates(), point: &point });
+            if self.state.round.is_multiple_of(self.plan.checkpoint_every) {
+                self.checkpoint()?;
+            }
+        }
+        self.checkpoint()
+    }
+
+    /// One round, to its end: only there can a training be resumed exactly.
+    fn round(&mut self) -> Result<Point, TrainError> {
+        let start = Instant::now();
+        let number = self.state.round;
+        self.rollouts.order(number, self.plan.round_episodes, Some(&self.published))?;
+        let owed = (self.state.ticks_of_last_round as f64 * self.plan.updates_per_tick + self.state.owed).max(0.0);
+        let updates = owed.floor() as u64;
+        self.state.owed = owed - updates as f64;
+        let mut losses = None;
+        for _ in 0..updates {
+            losses = Some(self.learner.update());
+        }
+        let learnt = start.elapsed();
+        // To its end, whoever asks to stop: rounds are short.
+        let Some(round) = self.rollouts.answer(&StopFlag::default())? else { return Err(gone(&self.out)) };
+        self.take(&round)?;
+        self.state.episodes += self.plan.round_episodes;
+        self.state.round += 1;
+        self.publish()?;
+        let evaluation = match self.state.round.is_multiple_of(self.plan.evaluate_every) {
+            true => Some(self.evaluate()?),
+            false => None,
+        };
+        Ok(Point::new(
+            number,
+            &self.state,
+            self.learner.updates(),
+            (updates, learnt),
+            &round,
+            losses,
+            evaluation,
+            start.elapsed(),
+        ))
+    }
+
+    /// Remembers what was played, and removes its shard.
+    fn take(&mut self, round: &Round) -> Result<(), TrainError> {
+        self.state.ticks_of_last_round = round.ticks();
+        self.state.ticks += round.ticks();
+        let Some(path) = &round.shard else { return Ok(()) };
+        let shard = Shard::read(path)?;
+        for (episode, rows) in rows_by_episode(&shard) {
+            for row in rows.clone() {
+                self.remember(&shard, row);
+            }
+            let success = round.episodes.iter().any(|played| played.episode == episode && played.success);
+            if success {
+                self.learner.favour_newest(rows.len());
+            }
+        }
+        let every = (shard.rows() / REFERENCE_STATES).max(1);
+        self.reference = (0..shard.rows())
+            .step_by(every)
+            .map(|row| shard.row(row).observation.iter().map(|metres| f64::from(*metres)).collect())
+            .collect();
+        let _ = std::fs::remove_file(path); // it stays in the way of nobody
+        Ok(())
+    }
+
+    fn remember(&mut self, shard: &Shard, row: usize) {
+        let row = shard.row(row);
+        let robots = shard.about.robots;
+        let metres = |from: &[f32], to: &[f32]| -> f64 {
+            let pairs = from.chunks_exact(2).zip(to.chunks_exact(2));
+            pairs.map(|(a, b)| f64::from((b[0] - a[0]).hypot(b[1] - a[1]))).sum()
+        };
+        let reward = self.plan.reward.reward(&row.terms, robots, metres(row.observation, row.next_observation));
+        let observation = self.scaled(row.observation);
+        let next_observation = self.scaled(row.next_observation);
+        let transition = Transition {
+            observation: &observation,
+            action: row.action,
+            reward: reward as f32,
+            terminated: row.terminated,
+            next_observation: &next_observation,
+        };
+        if row.truncated { self.learner.remember_truncated(transition) } else { self.learner.remember(transition) }
+    }
+
+    /// Positions (m) as the actor's contract gives them to it.
+    fn scaled(&self, metres: &[f32]) -> Vec<f32> {
+        let positions: Vec<Position> =
+            metres.chunks_exact(2).map(|xy| Position::new(f64::from(xy[0]), f64::from(xy[1]))).collect();
+        let mut input = vec![0.0; metres.len()];
+        self.contract.normalise(&positions, &mut input);
+        input
+    }
+
+    /// Hands the actor to the policy servers.
+    fn publish(&mut self) -> Result<(), TrainError> {
+        export(self.learner.actor(), &self.contract, &self.reference, &self.folder)?;
+        self.published = digest_of(&self.folder)?;
+        self.folder.prune(VERSIONS)?;
+        for session in [&self.rollouts, &self.evaluation] {
+            PolicyFolder::new(session.policy_folder()).prune(VERSIONS)?;
+        }
+        Ok(())
+    }
+
+    /// Plays the evaluation with the newest actor; keeps it when it is the best so far.
+    fn evaluate(&mut self) -> Result<Score, TrainError> {
+        self.evaluation.order(self.state.round, self.plan.evaluation_episodes, Some(&self.published))?;
+        let Some(round) = self.evaluation.answer(&StopFlag::default())? else { return Err(gone(&self.out)) };
+        let score = Score::of(&round.episodes);
+        let better = self.state.best.as_ref().is_none_or(|best| score.beats(&best.score, self.plan.most_ticks));
+        if better {
+            let best = PolicyFolder::new(self.out.join("best"));
+            export(self.learner.actor(), &self.contract, &self.reference, &best)?;
+            best.prune(1)?;
+            self.state.best = Some(Best { score, round: self.state.round, updates: self.learner.updates() });
+        }
+        Ok(score)
+    }
+
+    fn checkpoint(&mut self) -> Result<(), TrainError> {
+        self.state.reference.clone_from(&self.reference);
+        Ok(state::save(&self.out, &self.learner, &self.state)?)
+    }
+
+    /// How far it has come.
+    pub fn state(&self) -> &State {
+        &self.state
+    }
+
+    /// The learner.
+    pub fn learner(&self) -> &Learner {
+        &self.learner
+    }
+}
+
+fn gone(out: &Path) -> TrainError {
+    TrainError::Session(SessionError::Silent { folder: out.to_owned() })
+}
+
+fn rollout_arguments(plan: &Plan, stream: u64) -> Vec<String> {
+    let mut arguments = plan.session_arguments();
+    arguments.extend(["--start-jitter".into(), plan.start_jitter.to_string()]);
+    arguments.extend(["--seed".into(), shared::random::episode_seed(plan.seed, 1 + stream).to_string()]);
+    if plan.after_arrival >= 0 {
+        arguments.extend(["--after-arrival".into(), plan.after_arrival.to_string()]);
+    }
+    arguments
+}
+
+/// The layout, or some of the family's.
+fn layouts(plan: &Plan) -> Result<Vec<Scenario>, TrainError> {
+    let profile = plan.profile.parse()?;
+    let one = |spec: &str| Ok::<_, TrainError>(set_up(Some(spec), None, profile, &plan.set)?.0);
+    match plan.scenario.strip_suffix(":any") {
+        Some(family) => (0..LOOKED_AT).map(|seed| one(&format!("{family}:{seed}"))).collect(),
+        None => Ok(vec![one(&plan.scenario)?]),
+    }
+}
+
+/// Positions scaled to [-1, 1] over everything that stands in the layouts.
+fn contract(plan: &Plan, layouts: &[Scenario]) -> Contract {
+    let points = || {
+        layouts.iter().flat_map(|layout| {
+            let robots = layout.robots.iter().flat_map(|robot| [robot.start, robot.set_point]);
+            robots.chain(layout.obstacles.iter().map(|obstacle| obstacle.position))
+        })
+    };
+    let bounds = |axis: fn(&Position) -> f64| {
+        let (low, high) = points()
+            .map(|point| axis(&point))
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), at| (low.min(at), high.max(at)));
+        ((low + high) / 2.0, 2.0 / (high - low).max(1.0))
+    };
+    let ((x, wide), (y, high)) = (bounds(|point| point.x), bounds(|point| point.y));
+    let mut contract = Contract::standard(layouts[0].robots.len(), true);
+    contract.observation.offset = [x, y];
+    contract.observation.scale = [wide, high];
+    contract.name = Some(plan.scenario.clone());
+    contract.producer = Some(format!("vodca learner {}", env!("CARGO_PKG_VERSION")));
+    contract.trained_from = Some(format!("{} {} seed {}", plan.scenario, plan.profile, plan.seed));
+    contract
+}
+
+fn digest_of(folder: &PolicyFolder) -> Result<String, TrainError> {
+    let path = resolve(folder.root())?;
+    let bytes = std::fs::read(&path).map_err(|source| FolderError::Io {
+        action: "read",
+        path: path.display().to_string(),
+        source,
+    })?;
+    Ok(sha256(&bytes))
+}
+
+/// The rows of each episode of a shard, in order.
+fn rows_by_episode(shard: &Shard) -> Vec<(u64, std::ops::Range<usize>)> {
+    let mut episodes: Vec<(u64, std::ops::Range<usize>)> = Vec::new();
+    for (row, transition) in shard.iter().enumerate() {
+        match episodes.last_mut() {
+            Some((episode, rows)) if *episode == transition.episode => rows.end = row + 1,
+            _ => episodes.push((transition.episode, row..row + 1)),
+        }
+    }
+    episodes
+}

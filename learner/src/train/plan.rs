@@ -1,0 +1,264 @@
+//! What is trained, on what, and how: `train.toml` in the folder of a training, and the plans that ship.
+
+use crate::settings::{Settings, SettingsError};
+use serde::{Deserialize, Serialize};
+use shared::reward::Terms;
+use std::path::{Path, PathBuf};
+
+/// A training.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Plan {
+    /// Scenario: built-in name, file, or family (`box:8:3:any`: every episode has a layout of its own).
+    pub scenario: String,
+    /// Parameter set of the robots.
+    pub profile: String,
+    /// Changes of the robots' parameters, `KEY=VALUE`.
+    pub set: Vec<String>,
+    /// Seed of everything random.
+    pub seed: u64,
+    /// Every start of a training episode is moved by up to so much per axis, m.
+    pub start_jitter: f64,
+    /// K; 0: the scenario's.
+    pub max_ticks: u64,
+    /// An episode is cut off (and bootstrapped) so many ticks after everybody has arrived; negative: at K,
+    /// as in the paper.
+    pub after_arrival: i64,
+    /// Episodes with uniformly random horizons before the first round.
+    pub warm_up_episodes: u64,
+    /// Episodes of a round; played with the actor published at the end of the round before.
+    pub round_episodes: u64,
+    /// Updates per tick played.
+    pub updates_per_tick: f64,
+    /// Rounds between two evaluations.
+    pub evaluate_every: u64,
+    /// Episodes of an evaluation, always the same ones.
+    pub evaluation_episodes: u64,
+    /// Their starts are moved by up to so much per axis, m.
+    pub evaluation_jitter: f64,
+    /// An actor that needs more ticks counts as worse than one that does not.
+    pub most_ticks: u64,
+    /// Rounds between two checkpoints.
+    pub checkpoint_every: u64,
+    /// What of the paper's reward is learnt from.
+    pub reward: RewardWeights,
+    /// Soft actor-critic.
+    pub settings: Settings,
+}
+
+/// Weights of the paper's reward terms: 1 each, as printed, is the default; everything else is a deviation.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct RewardWeights {
+    /// Of R_p.
+    pub progress: f64,
+    /// Of R_h.
+    pub horizon: f64,
+    /// Of R_c.
+    pub collision: f64,
+    /// Of R_term.
+    pub arrival: f64,
+    /// Of R_v.
+    pub variance: f64,
+    /// Taken off per robot and tick: 175 makes standing at the set-point worth nothing, so that values
+    /// stay small. Ends of episodes by collision become attractive unless `collision` grows with it.
+    pub baseline: f64,
+    /// Taken off per metre driven by all robots: the paper's reward knows ticks, not metres.
+    pub per_metre: f64,
+}
+
+impl Default for RewardWeights {
+    fn default() -> Self {
+        Self { progress: 1.0, horizon: 1.0, collision: 1.0, arrival: 1.0, variance: 1.0, baseline: 0.0, per_metre: 0.0 }
+    }
+}
+
+impl RewardWeights {
+    /// What is learnt from for a tick of `robots` robots with `terms`, in which they drove `metres`.
+    pub fn reward(&self, terms: &Terms, robots: usize, metres: f64) -> f64 {
+        self.progress * terms.progress - self.horizon * terms.horizon - self.collision * terms.collision
+            + self.arrival * terms.arrival
+            - self.variance * terms.variance
+            - self.baseline * robots as f64
+            - self.per_metre * metres
+    }
+}
+
+impl Default for Plan {
+    fn default() -> Self {
+        Self {
+            scenario: "two_setpoint".into(),
+            profile: "paper".into(),
+            set: Vec::new(),
+            seed: 1,
+            start_jitter: 0.0,
+            max_ticks: 0,
+            after_arrival: -1,
+            warm_up_episodes: 4,
+            round_episodes: 2,
+            updates_per_tick: 1.0,
+            evaluate_every: 1,
+            evaluation_episodes: 1,
+            evaluation_jitter: 0.0,
+            most_ticks: 350,
+            checkpoint_every: 20,
+            reward: RewardWeights::default(),
+            settings: Settings::default(),
+        }
+    }
+}
+
+/// Why a plan cannot be used.
+#[derive(Debug, thiserror::Error)]
+pub enum PlanError {
+    /// The file.
+    #[error("cannot read the training plan {}: {source}", path.display())]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// Its content.
+    #[error("training plan {place}: {reason}")]
+    Content {
+        /// The file, or `--learn KEY=VALUE`.
+        place: String,
+        /// What is wrong, and where.
+        reason: String,
+    },
+    /// The learner's settings.
+    #[error(transparent)]
+    Settings(#[from] SettingsError),
+}
+
+impl Plan {
+    /// Reads a plan.
+    pub fn read(path: &Path) -> Result<Self, PlanError> {
+        let text = std::fs::read_to_string(path).map_err(|source| PlanError::File { path: path.to_owned(), source })?;
+        let place = path.display().to_string();
+        let plan: Self = toml::from_str(&text)
+            .map_err(|error| PlanError::Content { place: place.clone(), reason: error.to_string() })?;
+        plan.validate(&place)?;
+        Ok(plan)
+    }
+
+    /// The same plan after `KEY=VALUE`: a key of the plan, `reward.KEY`, or a key of the learner's settings.
+    pub fn with(&self, assignment: &str) -> Result<Self, PlanError> {
+        let place = format!("--learn {assignment}");
+        let refuse = |reason: String| PlanError::Content { place: place.clone(), reason };
+        let (key, value) = assignment.split_once('=').ok_or_else(|| refuse("write KEY=VALUE".into()))?;
+        let key = key.trim();
+        let mut table = toml::Table::try_from(self).map_err(|error| refuse(error.to_string()))?;
+        if !table.contains_key(key) && !key.contains('.') {
+            return Ok(Self { settings: self.settings.with(assignment)?, ..self.clone() });
+        }
+        // A text needs no quotes.
+        let parse = |value: &str| toml::from_str::<toml::Table>(&format!("value = {value}"));
+        let value = parse(value.trim()).or_else(|_| parse(&format!("{:?}", value.trim())));
+        let value = value.map_err(|error| refuse(error.message().to_owned()))?.remove("value");
+        let value = value.ok_or_else(|| refuse("it has no value".into()))?;
+        match key.split_once('.') {
+            None => table.insert(key.into(), value),
+            Some((section, key)) => table
+                .get_mut(section)
+                .and_then(toml::Value::as_table_mut)
+                .ok_or_else(|| refuse(format!("there is no section `{section}`; the sections are: reward, settings")))?
+                .insert(key.into(), value),
+        };
+        let plan: Self = table.try_into().map_err(|error: toml::de::Error| refuse(error.message().to_owned()))?;
+        plan.validate(&place)?;
+        Ok(plan)
+    }
+
+    /// As `train.toml`.
+    pub fn to_toml(&self) -> String {
+        // Numbers, texts and tables only: cannot fail.
+        toml::to_string(self).unwrap_or_default()
+    }
+
+    fn validate(&self, place: &str) -> Result<(), PlanError> {
+        let refuse = |key: &str, value: &dyn std::fmt::Display, allowed: &str| {
+            Err(PlanError::Content {
+                place: place.into(),
+                reason: format!("{key} = {value} is not allowed; {allowed}"),
+            })
+        };
+        if !(0.0..=10.0).contains(&self.start_jitter) {
+            return refuse("start_jitter", &self.start_jitter, "0..=10 m");
+        }
+        if !(0.0..=10.0).contains(&self.evaluation_jitter) {
+            return refuse("evaluation_jitter", &self.evaluation_jitter, "0..=10 m");
+        }
+        if !(0.0..=100.0).contains(&self.updates_per_tick) {
+            return refuse("updates_per_tick", &self.updates_per_tick, "0..=100");
+        }
+        let counts = [
+            ("warm_up_episodes", self.warm_up_episodes),
+            ("round_episodes", self.round_episodes),
+            ("evaluate_every", self.evaluate_every),
+            ("evaluation_episodes", self.evaluation_episodes),
+            ("checkpoint_every", self.checkpoint_every),
+        ];
+        for (key, count) in counts {
+            if !(1..=1_000_000).contains(&count) {
+                return refuse(key, &count, "1..=1000000");
+            }
+        }
+        Ok(self.settings.validate()?)
+    }
+
+    /// The arguments of `coordinator rollout` that all sessions share.
+    pub fn session_arguments(&self) -> Vec<String> {
+        let mut arguments =
+            vec!["--scenario".to_owned(), self.scenario.clone(), "--profile".into(), self.profile.clone()];
+        for set in &self.set {
+            arguments.extend(["--set".into(), set.clone()]);
+        }
+        if self.max_ticks > 0 {
+            arguments.extend(["--max-ticks".into(), self.max_ticks.to_string()]);
+        }
+        arguments
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_plan_survives_its_file() {
+        let place = tempfile::tempdir().unwrap();
+        let path = place.path().join("train.toml");
+        let plan = Plan { set: vec!["vodca.rows=each".into()], ..Plan::default() };
+        std::fs::write(&path, plan.to_toml()).unwrap();
+        assert_eq!(Plan::read(&path).unwrap(), plan);
+    }
+
+    #[test]
+    fn one_key_changes_the_plan_the_reward_or_the_settings() {
+        let plan = Plan::default().with("scenario=ex14_d").unwrap().with("reward.variance=0").unwrap();
+        let plan = plan.with("batch=64").unwrap().with("settings.discount=0.9").unwrap();
+        assert_eq!((plan.scenario.as_str(), plan.reward.variance, plan.settings.batch), ("ex14_d", 0.0, 64));
+        assert_eq!(plan.settings.discount, 0.9);
+    }
+
+    #[test]
+    fn a_wrong_key_or_value_is_named() {
+        let message = |assignment: &str| Plan::default().with(assignment).unwrap_err().to_string();
+        assert!(message("round_episodes=0").contains("round_episodes = 0 is not allowed; 1..=1000000"));
+        assert!(message("nothing=1").contains("nothing"), "{}", message("nothing=1"));
+        assert!(message("reward.nothing=1").contains("nothing"));
+        assert!(message("rewart.variance=1").contains("there is no section `rewart`"));
+        assert!(message("seed").contains("KEY=VALUE") || message("seed").contains("seed"));
+    }
+
+    #[test]
+    fn the_default_weights_give_the_paper_s_reward() {
+        let terms = Terms { progress: 9.0, horizon: 2.0, collision: 4.0, arrival: 3.0, variance: 1.5 };
+        let weights = RewardWeights::default();
+        assert_eq!(weights.reward(&terms, 7, 2.0), terms.total());
+        let other = RewardWeights { baseline: 10.0, per_metre: 3.0, variance: 0.0, ..weights };
+        assert_eq!(other.reward(&terms, 7, 2.0), terms.total() + 1.5 - 70.0 - 6.0);
+    }
+}

@@ -1,0 +1,223 @@
+//! A team of robot processes that plays rounds of episodes for a trainer: a `rollout` session of the
+//! coordinator, told what to do line by line.
+
+use serde::Deserialize;
+use shared::stop::StopFlag;
+use std::fs::File;
+use std::io::{BufRead, BufReader, Write};
+use std::os::unix::process::CommandExt;
+use std::path::{Path, PathBuf};
+use std::process::{Child, ChildStdin, Command, Stdio};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
+use std::time::{Duration, Instant};
+
+/// Name of the coordinator's program beside this one.
+const PROGRAM: &str = "coordinator";
+/// How often a waiting trainer looks whether it was asked to stop.
+const LOOK_AROUND: Duration = Duration::from_millis(50);
+/// How long a round may take: rounds are seconds, a hanging session is not.
+const PATIENCE: Duration = Duration::from_secs(600);
+/// How long a session may take to end.
+const GRACE: Duration = Duration::from_secs(5);
+
+/// Why a session does not play.
+#[derive(Debug, thiserror::Error)]
+pub enum SessionError {
+    /// The coordinator is not there.
+    #[error("the coordinator {} is not there; build it with `cargo build --release -p coordinator -p agent`", .0.display())]
+    NoProgram(PathBuf),
+    /// The system refused.
+    #[error("cannot start the rollouts of {}: {source}", folder.display())]
+    Refused {
+        /// The session's folder.
+        folder: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// It ended before it had played its round.
+    #[error("the rollouts in {} ended: {said}", folder.display())]
+    Ended {
+        /// The session's folder.
+        folder: PathBuf,
+        /// Its last line.
+        said: String,
+    },
+    /// It hangs.
+    #[error("the rollouts in {} gave no answer for {} s; see the logs there", folder.display(), PATIENCE.as_secs())]
+    Silent {
+        /// The session's folder.
+        folder: PathBuf,
+    },
+    /// It answers what nobody understands.
+    #[error("the rollouts in {} answered `{line}`: {reason}; are coordinator and learner of one version?", folder.display())]
+    Strange {
+        /// The session's folder.
+        folder: PathBuf,
+        /// The answer.
+        line: String,
+        /// What is wrong with it.
+        reason: String,
+    },
+}
+
+/// One episode as the coordinator tells it.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+pub struct Played {
+    /// Its number.
+    pub episode: u64,
+    /// Ticks played.
+    pub ticks: u64,
+    /// Sum of R over them.
+    #[serde(rename = "return")]
+    pub total: f64,
+    /// Whether everybody arrived and nobody collided.
+    pub success: bool,
+    /// Ticks until everybody had arrived; all of them without success.
+    pub arrived_tick: u64,
+    /// Path of all robots until then, m.
+    pub path: f64,
+}
+
+/// A round that was played.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+pub struct Round {
+    /// The shard of its transitions, unless they are discarded.
+    pub shard: Option<PathBuf>,
+    /// How long it took, s.
+    pub seconds: f64,
+    /// Its episodes.
+    pub episodes: Vec<Played>,
+}
+
+impl Round {
+    /// Ticks of all its episodes.
+    pub fn ticks(&self) -> u64 {
+        self.episodes.iter().map(|episode| episode.ticks).sum()
+    }
+}
+
+/// A running session; ended when dropped.
+pub struct Session {
+    child: Child,
+    orders: Option<ChildStdin>,
+    answers: Receiver<String>,
+    folder: PathBuf,
+}
+
+impl Session {
+    /// Starts `coordinator rollout ARGUMENTS --rounds-from-stdin --out FOLDER`.
+    pub fn start(arguments: &[String], folder: &Path) -> Result<Self, SessionError> {
+        let program = std::env::current_exe().unwrap_or_default().with_file_name(PROGRAM);
+        if !program.is_file() {
+            return Err(SessionError::NoProgram(program));
+        }
+        let refused = |source| SessionError::Refused { folder: folder.to_owned(), source };
+        let log = log_file(folder);
+        if let Some(parent) = log.parent() {
+            std::fs::create_dir_all(parent).map_err(refused)?;
+        }
+        let mut child = Command::new(program)
+            .arg("rollout")
+            .args(arguments)
+            .arg("--rounds-from-stdin")
+            .arg("--out")
+            .arg(folder)
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(File::create(log).map_err(refused)?)
+            .process_group(0) // Ctrl-C is for the trainer, which ends its sessions in order
+            .spawn()
+            .map_err(refused)?;
+        let (orders, stdout) = (child.stdin.take(), child.stdout.take());
+        let (sender, answers) = channel();
+        if let Some(stdout) = stdout {
+            std::thread::spawn(move || {
+                for line in BufReader::new(stdout).lines().map_while(Result::ok) {
+                    if sender.send(line).is_err() {
+                        return;
+                    }
+                }
+            });
+        }
+        Ok(Self { child, orders, answers, folder: folder.to_owned() })
+    }
+
+    /// Orders `episodes` episodes as round `number`; with `policy`, the SHA-256 of an actor, once it acts.
+    pub fn order(&mut self, number: u64, episodes: u64, policy: Option<&str>) -> Result<(), SessionError> {
+        let line = format!("{number} {episodes} {}\n", policy.unwrap_or_default());
+        match self.orders.as_mut().map(|orders| orders.write_all(line.as_bytes()).and_then(|()| orders.flush())) {
+            Some(Ok(())) => Ok(()),
+            _ => Err(self.ended()),
+        }
+    }
+
+    /// Waits for the round that was ordered; `None`: somebody asked to stop.
+    pub fn answer(&mut self, stop: &StopFlag) -> Result<Option<Round>, SessionError> {
+        let deadline = Instant::now() + PATIENCE;
+        loop {
+            match self.answers.recv_timeout(LOOK_AROUND) {
+                Ok(line) => {
+                    let round = serde_json::from_str(&line).map_err(|error| SessionError::Strange {
+                        folder: self.folder.clone(),
+                        reason: error.to_string(),
+                        line: line.clone(),
+                    })?;
+                    return Ok(Some(round));
+                }
+                Err(RecvTimeoutError::Disconnected) => return Err(self.ended()),
+                Err(RecvTimeoutError::Timeout) if stop.is_set() => return Ok(None),
+                Err(RecvTimeoutError::Timeout) if Instant::now() > deadline => {
+                    return Err(SessionError::Silent { folder: self.folder.clone() });
+                }
+                Err(RecvTimeoutError::Timeout) => {}
+            }
+        }
+    }
+
+    /// The folder in which its policy server keeps the versions it was given.
+    pub fn policy_folder(&self) -> PathBuf {
+        shared::policy::run_folder(&self.folder.join("session"))
+    }
+
+    fn ended(&self) -> SessionError {
+        let said = std::fs::read_to_string(log_file(&self.folder)).unwrap_or_default();
+        let said = said.lines().rev().find(|line| !line.trim().is_empty()).unwrap_or("it said nothing");
+        SessionError::Ended { folder: self.folder.clone(), said: said.trim().to_owned() }
+    }
+}
+
+/// What the session says, beside its folder: the folder must be empty when it starts.
+fn log_file(folder: &Path) -> PathBuf {
+    folder.with_extension("log")
+}
+
+impl Drop for Session {
+    /// The end of its orders is the end of the session; what hangs is killed.
+    fn drop(&mut self) {
+        self.orders = None;
+        shared::os::terminate(self.child.id());
+        let deadline = Instant::now() + GRACE;
+        while matches!(self.child.try_wait(), Ok(None)) && Instant::now() < deadline {
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        // Both fail only when it has ended.
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_the_coordinator_answers_is_understood() {
+        let line = r#"{"episodes":[{"arrived_tick":89,"episode":4,"path":44.25,"return":1200.5,"success":true,
+            "ticks":350}],"seconds":0.5,"shard":"out/000007.safetensors"}"#;
+        let round: Round = serde_json::from_str(line).unwrap();
+        assert_eq!((round.ticks(), round.episodes[0].arrived_tick, round.episodes[0].success), (350, 89, true));
+        assert_eq!(round.shard, Some(PathBuf::from("out/000007.safetensors")));
+        let discarded: Round = serde_json::from_str(r#"{"episodes":[],"seconds":0,"shard":null}"#).unwrap();
+        assert_eq!(discarded.shard, None);
+    }
+}
