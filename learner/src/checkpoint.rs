@@ -208,7 +208,11 @@ mod tests {
                 terminated: number % 7 == 0,
                 next_observation: &n,
             };
-            if number % 10 == 9 { learner.remember_truncated(row) } else { learner.remember(row) }
+            if number % 10 == 9 {
+                learner.remember_truncated(row)
+            } else {
+                learner.remember(row)
+            }
             if number == 35 {
                 learner.favour_newest(6);
             }
@@ -240,8 +244,13 @@ mod tests {
         assert_eq!(bytes(&resumed), bytes(&whole));
         // The buffer is full and turns over; both must forget the same rows.
         for learner in [&mut whole, &mut resumed] {
-            let row =
-                Transition { observation: &[9.0; 4], action: &[0.1; 2], reward: 1.0, terminated: false, next_observation: &[8.0; 4] };
+            let row = Transition {
+                observation: &[9.0; 4],
+                action: &[0.1; 2],
+                reward: 1.0,
+                terminated: false,
+                next_observation: &[8.0; 4],
+            };
             learner.remember(row);
         }
         let losses = run(&mut whole, 17);

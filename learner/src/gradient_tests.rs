@@ -13,7 +13,14 @@ const HIDDEN: usize = 11;
 const BATCH: usize = 5;
 
 fn settings() -> Settings {
-    Settings { hidden: HIDDEN, batch: BATCH, temperature: 0.3, log_std_min: -0.2, log_std_max: 0.2, ..Settings::default() }
+    Settings {
+        hidden: HIDDEN,
+        batch: BATCH,
+        temperature: 0.3,
+        log_std_min: -0.2,
+        log_std_max: 0.2,
+        ..Settings::default()
+    }
 }
 
 fn actor_widths() -> [usize; 4] {

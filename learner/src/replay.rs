@@ -142,7 +142,7 @@ impl Replay {
     }
 
     /// Favours exactly these slots of a buffer whose columns were filled; `None` when one is not there.
-    pub(crate) fn set_favoured(&mut self, slots: &[u32]) -> Option<()> {
+    pub(crate) fn set_favoured(&mut self, slots: &[u64]) -> Option<()> {
         self.favoured.clear();
         self.place = vec![NOWHERE; self.len()];
         for slot in slots {

@@ -31,7 +31,13 @@ fn a_point_is_driven_to_its_goal() {
     for _ in 0..2000 {
         let (x, a) = (draw(), draw());
         let next = (x + 0.2 * a).clamp(-1.0, 1.0);
-        let row = Transition { observation: &[x], action: &[a], reward: -next * next, terminated: false, next_observation: &[next] };
+        let row = Transition {
+            observation: &[x],
+            action: &[a],
+            reward: -next * next,
+            terminated: false,
+            next_observation: &[next],
+        };
         learner.remember(row);
     }
     let far = |learner: &Learner, start: f32| {
@@ -57,7 +63,13 @@ fn a_bandit_is_solved_and_the_entropy_reaches_its_target() {
     for _ in 0..1000 {
         let a = 2.0 * unit(&mut generator) as f32 - 1.0;
         let reward = -4.0 * (a - 0.5) * (a - 0.5);
-        learner.remember(Transition { observation: &[1.0], action: &[a], reward, terminated: true, next_observation: &[1.0] });
+        learner.remember(Transition {
+            observation: &[1.0],
+            action: &[a],
+            reward,
+            terminated: true,
+            next_observation: &[1.0],
+        });
     }
     let losses: Vec<_> = (0..2500).map(|_| learner.update()).collect();
     let best = action(&learner, &[1.0]);
@@ -71,7 +83,8 @@ fn a_bandit_is_solved_and_the_entropy_reaches_its_target() {
 fn a_time_limit_is_no_end_and_a_collision_is() {
     // A state that pays 1 for ever is worth 1 / (1 - gamma) = 2; one that ends is worth 1. alpha is
     // nearly 0, so that entropy is worth nothing.
-    let settings = Settings { discount: 0.5, temperature: 1e-6, temperature_fixed: true, target_rate: 0.05, ..small(32) };
+    let settings =
+        Settings { discount: 0.5, temperature: 1e-6, temperature_fixed: true, target_rate: 0.05, ..small(32) };
     let mut learner = Learner::new(1, 1, settings, 3);
     let mut generator = stream(3, Use::Problem, 0, 0);
     for number in 0..600 {
