@@ -102,6 +102,11 @@ impl Replay {
         self.favoured.len()
     }
 
+    /// s of every row, in slot order.
+    pub fn observations(&self) -> impl ExactSizeIterator<Item = &[f32]> {
+        self.observation.chunks_exact(self.observations)
+    }
+
     /// The favoured slots in drawing order.
     pub(crate) fn favoured_slots(&self) -> &[u32] {
         &self.favoured
