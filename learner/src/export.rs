@@ -189,6 +189,27 @@ mod tests {
     }
 
     #[test]
+    fn the_onnx_checker_accepts_the_file_and_onnx_answers_alike() {
+        let place = tempfile::tempdir().unwrap();
+        let folder = PolicyFolder::new(place.path().join("mine"));
+        let mut contract = Contract::standard(14, true);
+        contract.observation.scale = [0.04, 0.05];
+        contract.observation.offset = [1.0, -2.0];
+        let states: Vec<Vec<f64>> = (0..50).map(|state| vec![f64::from(state) - 25.0; 28]).collect();
+        let version = export(&actor(), &contract, &states, &folder).unwrap();
+        let (model, script) = (folder.model(version), concat!(env!("CARGO_MANIFEST_DIR"), "/tests/check_model.py"));
+        let reference = model.with_file_name("reference.json");
+        let output = std::process::Command::new("python3").args([script.as_ref(), &*model, &*reference]).output();
+        let Ok(output) = output else { return eprintln!("skipped: there is no python3") };
+        let said = String::from_utf8_lossy(&output.stdout);
+        if said.starts_with("skipped") {
+            return eprintln!("{said}");
+        }
+        assert!(output.status.success(), "{said}{}", String::from_utf8_lossy(&output.stderr));
+        assert_eq!(said.trim(), "50 states answered alike");
+    }
+
+    #[test]
     fn what_cannot_serve_is_not_exported() {
         let message = |actor: &Actor, robots| {
             let contract = Contract::standard(robots, true);

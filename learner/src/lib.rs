@@ -18,6 +18,8 @@ pub mod matmul;
 pub mod network;
 pub mod progress;
 #[cfg(test)]
+mod pytorch_tests;
+#[cfg(test)]
 mod reference;
 pub mod replay;
 pub mod rollouts;

@@ -114,11 +114,11 @@ mod tests {
             curves.scalars(step * 100, &[("loss/critic", 1.0 / (step + 1) as f64), ("alpha", step as f64)]).unwrap();
         }
         let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/read_curves.py");
-        let output = Command::new("python3").arg(script).arg(place.path()).output().unwrap();
+        let output = Command::new("python3").arg(script).arg(place.path()).output();
+        let Ok(output) = output else { return eprintln!("skipped: there is no python3") };
         let said = String::from_utf8_lossy(&output.stdout);
         if said.starts_with("skipped") {
-            eprintln!("{said}");
-            return;
+            return eprintln!("{said}");
         }
         assert!(output.status.success(), "{said}{}", String::from_utf8_lossy(&output.stderr));
         assert_eq!(said.trim(), "20 points of loss/critic, the last at 1900: 0.05");
