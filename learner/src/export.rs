@@ -66,15 +66,20 @@ pub fn export(
     states: &[Vec<f64>],
     folder: &PolicyFolder,
 ) -> Result<Version, ExportError> {
+    let model = model(actor, contract)?;
     let reference = reference_set(actor, contract, states)?;
     // Only strings, numbers and lists: cannot fail.
     let reference = serde_json::to_string_pretty(&reference).unwrap_or_default();
     let reference = (!states.is_empty()).then_some(reference.as_str());
-    Ok(folder.publish(&model(actor, contract)?, contract, reference)?)
+    Ok(folder.publish(&model, contract, reference)?)
 }
 
 /// The bytes of the ONNX file, with the contract inside.
 pub fn model(actor: &Actor, contract: &Contract) -> Result<Vec<u8>, ExportError> {
+    Ok(graph(actor, contract)?.write())
+}
+
+fn graph(actor: &Actor, contract: &Contract) -> Result<ActorGraph, ExportError> {
     let (observations, actions, robots) = (actor.observations(), actor.actions(), contract.robots);
     if observations != 2 * robots || actions != robots {
         return Err(ExportError::Robots { observations, actions, robots });
@@ -94,14 +99,13 @@ pub fn model(actor: &Actor, contract: &Contract) -> Result<Vec<u8>, ExportError>
     };
     mean.outputs = actions;
     let bounds = actor.bounds();
-    let graph = ActorGraph {
+    Ok(ActorGraph {
         hidden,
         mean,
         log_std: Some(log_std),
         log_std_bounds: (bounds.low, bounds.high),
         metadata: BTreeMap::from([(METADATA_KEY.to_string(), contract.meaning().to_json())]),
-    };
-    Ok(graph.write())
+    })
 }
 
 fn reference_set(actor: &Actor, contract: &Contract, states: &[Vec<f64>]) -> Result<ReferenceSet, ExportError> {
@@ -121,4 +125,104 @@ fn reference_set(actor: &Actor, contract: &Contract, states: &[Vec<f64>]) -> Res
         cases.push(Case { observation: state.clone(), mean, log_std, horizon });
     }
     Ok(ReferenceSet { tolerance: TOLERANCE, cases })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::reference::wide;
+    use crate::settings::Settings;
+    use shared::policy::onnx::Model;
+    use shared::random::{Use, stream, unit};
+
+    fn actor() -> Actor {
+        Actor::new(28, 14, &Settings { log_std_min: -0.1, ..Settings::default() }, 3)
+    }
+
+    fn layer(dense: &Dense, input: &[f64]) -> Vec<f64> {
+        let rows = wide(&dense.weight);
+        let sum =
+            |(row, bias): (&[f64], &f32)| f64::from(*bias) + row.iter().zip(input).map(|(w, x)| w * x).sum::<f64>();
+        rows.chunks_exact(dense.inputs).zip(&dense.bias).map(sum).collect()
+    }
+
+    #[test]
+    fn the_exported_layers_answer_a_thousand_states_as_the_network_does() {
+        let actor = actor();
+        let graph = graph(&actor, &Contract::standard(14, true)).unwrap();
+        let log_std = graph.log_std.as_ref().unwrap();
+        assert_eq!((graph.hidden.len(), graph.mean.outputs, log_std.outputs), (2, 14, 14));
+        let (mut largest, mut cut) = (0.0f64, 0);
+        for state in 0..1000 {
+            let mut generator = stream(9, Use::Problem, 0, state);
+            let state: Vec<f32> = (0..28).map(|_| 4.0 * unit(&mut generator) as f32 - 2.0).collect();
+            let relu = |sums: Vec<f64>| sums.into_iter().map(|sum| sum.max(0.0)).collect::<Vec<f64>>();
+            let hidden = graph.hidden.iter().fold(wide(&state), |values, dense| relu(layer(dense, &values)));
+            let clip =
+                |log_std: f64| log_std.clamp(f64::from(graph.log_std_bounds.0), f64::from(graph.log_std_bounds.1));
+            let expected_std: Vec<f64> = layer(log_std, &hidden).into_iter().map(clip).collect();
+            let (mean, log_std) = actor.answer(&state);
+            cut += log_std.iter().filter(|log_std| **log_std == -0.1).count();
+            let both = wide(&mean)
+                .into_iter()
+                .zip(layer(&graph.mean, &hidden))
+                .chain(wide(&log_std).into_iter().zip(expected_std));
+            largest = both.fold(largest, |most, (got, expected)| most.max((got - expected).abs()));
+        }
+        assert!(largest < 5e-6, "{largest}");
+        assert!(cut > 0, "the bounds of log sigma were never reached");
+    }
+
+    #[test]
+    fn a_published_actor_is_a_whole_version() {
+        let place = tempfile::tempdir().unwrap();
+        let folder = PolicyFolder::new(place.path().join("mine"));
+        let states: Vec<Vec<f64>> = (0..100).map(|state| vec![f64::from(state); 28]).collect();
+        let version = export(&actor(), &Contract::standard(14, true), &states, &folder).unwrap();
+        assert_eq!(folder.current().unwrap(), Some(version));
+        let model = std::fs::read(folder.model(version)).unwrap();
+        assert!(Model::read(&model).unwrap().metadata.contains_key(METADATA_KEY));
+        let reference = std::fs::read(folder.model(version).with_file_name("reference.json")).unwrap();
+        let reference: serde_json::Value = serde_json::from_slice(&reference).unwrap();
+        assert_eq!(reference["cases"].as_array().unwrap().len(), 50);
+        assert_eq!(reference["cases"][1]["observation"][0], 2.0);
+    }
+
+    #[test]
+    fn the_onnx_checker_accepts_the_file_and_onnx_answers_alike() {
+        let place = tempfile::tempdir().unwrap();
+        let folder = PolicyFolder::new(place.path().join("mine"));
+        let mut contract = Contract::standard(14, true);
+        contract.observation.scale = [0.04, 0.05];
+        contract.observation.offset = [1.0, -2.0];
+        let states: Vec<Vec<f64>> = (0..50).map(|state| vec![f64::from(state) - 25.0; 28]).collect();
+        let version = export(&actor(), &contract, &states, &folder).unwrap();
+        let (model, script) = (folder.model(version), concat!(env!("CARGO_MANIFEST_DIR"), "/tests/check_model.py"));
+        let reference = model.with_file_name("reference.json");
+        let output = std::process::Command::new("python3").args([script.as_ref(), &*model, &*reference]).output();
+        let Ok(output) = output else { return eprintln!("skipped: there is no python3") };
+        let said = String::from_utf8_lossy(&output.stdout);
+        if said.starts_with("skipped") {
+            return eprintln!("{said}");
+        }
+        assert!(output.status.success(), "{said}{}", String::from_utf8_lossy(&output.stderr));
+        assert_eq!(said.trim(), "50 states answered alike");
+    }
+
+    #[test]
+    fn what_cannot_serve_is_not_exported() {
+        let message = |actor: &Actor, robots| {
+            let contract = Contract::standard(robots, true);
+            let place = tempfile::tempdir().unwrap();
+            let folder = PolicyFolder::new(place.path().join("mine"));
+            let refused = export(actor, &contract, &[vec![1.0; 2 * robots]], &folder).unwrap_err().to_string();
+            assert_eq!(folder.versions().unwrap(), []);
+            refused
+        };
+        let other = Actor::new(6, 3, &Settings::default(), 1);
+        assert!(message(&other, 2).contains("a contract for 2 robots does not fit"), "{}", message(&other, 2));
+        let mut diverged = actor();
+        diverged.network_mut().parameters_mut()[0] = f32::NAN;
+        assert!(message(&diverged, 14).contains("is not finite"), "{}", message(&diverged, 14));
+    }
 }

@@ -2,7 +2,7 @@
 //! ruler of the gradient checks and of the export.
 
 /// Output of a network for one row; `parameters` as in `Network`, `widths` with the input first.
-pub fn network(widths: &[usize], parameters: &[f64], input: &[f64]) -> Vec<f64> {
+pub(crate) fn network(widths: &[usize], parameters: &[f64], input: &[f64]) -> Vec<f64> {
     let mut at = 0;
     let mut values = input.to_vec();
     for (layer, pair) in widths.windows(2).enumerate() {
@@ -21,7 +21,7 @@ pub fn network(widths: &[usize], parameters: &[f64], input: &[f64]) -> Vec<f64> 
 }
 
 /// Action and log pi(a|s) of one row from the actor's output and eps; log(1 - tanh^2) as written.
-pub fn squash(output: &[f64], noise: &[f64], bounds: (f64, f64)) -> (Vec<f64>, f64) {
+pub(crate) fn squash(output: &[f64], noise: &[f64], bounds: (f64, f64)) -> (Vec<f64>, f64) {
     let n = noise.len();
     let mut log_probability = 0.0;
     let mut actions = Vec::new();
@@ -36,7 +36,7 @@ pub fn squash(output: &[f64], noise: &[f64], bounds: (f64, f64)) -> (Vec<f64>, f
 }
 
 /// Central difference of `loss` for parameter `index`, with a step that f64 resolves.
-pub fn difference(parameters: &[f64], index: usize, loss: impl Fn(&[f64]) -> f64) -> f64 {
+pub(crate) fn difference(parameters: &[f64], index: usize, loss: impl Fn(&[f64]) -> f64) -> f64 {
     let step = 1e-5;
     let mut moved = parameters.to_vec();
     moved[index] += step;
@@ -46,6 +46,6 @@ pub fn difference(parameters: &[f64], index: usize, loss: impl Fn(&[f64]) -> f64
 }
 
 /// f32 numbers as f64.
-pub fn wide(numbers: &[f32]) -> Vec<f64> {
+pub(crate) fn wide(numbers: &[f32]) -> Vec<f64> {
     numbers.iter().map(|number| f64::from(*number)).collect()
 }

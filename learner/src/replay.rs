@@ -102,6 +102,11 @@ impl Replay {
         self.favoured.len()
     }
 
+    /// s of every row, in slot order.
+    pub fn observations(&self) -> impl ExactSizeIterator<Item = &[f32]> {
+        self.observation.chunks_exact(self.observations)
+    }
+
     /// The favoured slots in drawing order.
     pub(crate) fn favoured_slots(&self) -> &[u32] {
         &self.favoured
@@ -142,7 +147,7 @@ impl Replay {
     }
 
     /// Favours exactly these slots of a buffer whose columns were filled; `None` when one is not there.
-    pub(crate) fn set_favoured(&mut self, slots: &[u32]) -> Option<()> {
+    pub(crate) fn set_favoured(&mut self, slots: &[u64]) -> Option<()> {
         self.favoured.clear();
         self.place = vec![NOWHERE; self.len()];
         for slot in slots {

@@ -40,6 +40,40 @@ impl Losses {
         value: f64::NAN,
         target: f64::NAN,
     };
+
+    /// Means over some updates; of what only some report, over those.
+    pub fn mean(losses: &[Losses]) -> Losses {
+        let mean = |part: fn(&Losses) -> f64| {
+            let (sum, count) = losses
+                .iter()
+                .map(part)
+                .filter(|value| !value.is_nan())
+                .fold((0.0, 0.0), |(sum, count), value| (sum + value, count + 1.0));
+            sum / count
+        };
+        Losses {
+            critic: mean(|losses| losses.critic),
+            actor: mean(|losses| losses.actor),
+            temperature_loss: mean(|losses| losses.temperature_loss),
+            temperature: mean(|losses| losses.temperature),
+            entropy: mean(|losses| losses.entropy),
+            value: mean(|losses| losses.value),
+            target: mean(|losses| losses.target),
+        }
+    }
+
+    /// Name and value of each curve.
+    pub fn scalars(&self) -> [(&'static str, f64); 7] {
+        [
+            ("loss/critic", self.critic),
+            ("loss/actor", self.actor),
+            ("loss/temperature", self.temperature_loss),
+            ("temperature", self.temperature),
+            ("entropy", self.entropy),
+            ("value/mean", self.value),
+            ("value/target", self.target),
+        ]
+    }
 }
 
 /// Soft actor-critic: networks, optimisers, temperature, memory and counters.
@@ -131,6 +165,11 @@ impl Learner {
             return Losses::NOTHING;
         }
         self.draw();
+        self.step()
+    }
+
+    /// The update for what was drawn.
+    pub(crate) fn step(&mut self) -> Losses {
         let target = self.soft_target();
         let (critic, value) = self.critic_step();
         let mut losses = Losses { critic, value, target, ..Losses::NOTHING };

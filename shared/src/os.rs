@@ -9,6 +9,12 @@ pub fn now_ns() -> u64 {
     now.tv_sec as u64 * 1_000_000_000 + now.tv_nsec as u64
 }
 
+/// Nanoseconds that this process has spent on the processors, all threads together.
+pub fn cpu_ns() -> u64 {
+    let spent = clock_gettime(ClockId::ProcessCPUTime);
+    spent.tv_sec as u64 * 1_000_000_000 + spent.tv_nsec as u64
+}
+
 /// Lets the kernel kill this process when its parent ends, and says whether the parent is still
 /// `parent` (it may have ended before we asked).
 pub fn die_with_parent(parent: u32) -> bool {

@@ -4,7 +4,7 @@ use super::search;
 use crate::compare::{Contender, Entry, HorizonPart, Job, Plan, Run, Sample, expand, run_all};
 use crate::exit::{Ending, Failure, Outcome};
 use crate::progress::Progress;
-use crate::record::folder::{RunFolder, write_new};
+use crate::record::folder::write_new;
 use crate::search::{POPULATION, constants};
 use crate::stdout;
 use crate::text_table::TextTable;

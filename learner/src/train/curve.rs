@@ -4,6 +4,7 @@ use super::score::Score;
 use super::session::Round;
 use super::state::State;
 use crate::Losses;
+use crate::tensorboard::{Curves, CurvesError};
 use std::fs::{File, OpenOptions};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -94,31 +95,40 @@ impl Point {
 
 /// The curves cannot be written.
 #[derive(Debug, thiserror::Error)]
-#[error("cannot write {}: {source}; the checkpoints stay usable: free some space and --resume", path.display())]
-pub struct CurveError {
-    path: PathBuf,
-    source: std::io::Error,
+pub enum CurveError {
+    /// The table.
+    #[error("cannot write {}: {source}; the checkpoints stay usable: free some space and --resume", path.display())]
+    Table {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// The event file.
+    #[error(transparent)]
+    Events(#[from] CurvesError),
 }
 
 /// The files of the curves.
 #[derive(Debug)]
 pub struct Curve {
     path: PathBuf,
-    file: File,
+    table: File,
+    events: Curves,
 }
 
 impl Curve {
     /// Opens the curves in the folder `out`, to go on after `updates` updates.
     pub fn open(out: &Path, updates: u64) -> Result<Self, CurveError> {
         let path = out.join("train.csv");
-        let failed = |source| CurveError { path: path.clone(), source };
+        let failed = |source| CurveError::Table { path: path.clone(), source };
         let mut file = OpenOptions::new().create(true).append(true).open(&path).map_err(failed)?;
         if file.metadata().map_err(failed)?.len() == 0 {
             debug_assert_eq!(updates, 0, "a training that goes on has its curve");
             let names: Vec<&str> = empty().scalars().iter().map(|(name, _)| *name).collect();
             writeln!(file, "round,episodes,ticks,updates,{}", names.join(",")).map_err(failed)?;
         }
-        Ok(Self { path, file })
+        Ok(Self { path, table: file, events: Curves::create(out)? })
     }
 
     /// Adds a round.
@@ -127,7 +137,9 @@ impl Curve {
         let numbers: Vec<String> = point.scalars().iter().map(|(_, value)| number(*value)).collect();
         let Point { round, episodes, ticks, updates, .. } = point;
         let line = format!("{round},{episodes},{ticks},{updates},{}\n", numbers.join(","));
-        self.file.write_all(line.as_bytes()).map_err(|source| CurveError { path: self.path.clone(), source })
+        let failed = |source| CurveError::Table { path: self.path.clone(), source };
+        self.table.write_all(line.as_bytes()).map_err(failed)?;
+        Ok(self.events.scalars(point.updates, &point.scalars())?)
     }
 }
 

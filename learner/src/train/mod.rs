@@ -12,8 +12,9 @@ pub mod score;
 pub mod session;
 pub mod state;
 
+use crate::Learner;
 use crate::export::{ExportError, export};
-use crate::{Learner, Transition};
+use crate::rollouts::{RolloutsError, remember_shard};
 use curve::{Curve, CurveError, Point};
 use plan::Plan;
 use score::Score;
@@ -47,7 +48,10 @@ pub enum TrainError {
     Session(#[from] SessionError),
     /// What it recorded.
     #[error(transparent)]
-    Rollout(#[from] RolloutError),
+    Shard(#[from] RolloutError),
+    /// Rollouts that do not fit the training.
+    #[error(transparent)]
+    Rollouts(#[from] RolloutsError),
     /// The actor.
     #[error(transparent)]
     Export(#[from] ExportError),
@@ -235,15 +239,7 @@ impl Trainer {
         self.state.ticks += round.ticks();
         let Some(path) = &round.shard else { return Ok(()) };
         let shard = Shard::read(path)?;
-        for (episode, rows) in rows_by_episode(&shard) {
-            for row in rows.clone() {
-                self.remember(&shard, row);
-            }
-            let success = round.episodes.iter().any(|played| played.episode == episode && played.success);
-            if success {
-                self.learner.favour_newest(rows.len());
-            }
-        }
+        remember_shard(&mut self.learner, &self.contract, &self.plan.reward, path, &shard)?;
         let every = (shard.rows() / REFERENCE_STATES).max(1);
         self.reference = (0..shard.rows())
             .step_by(every)
@@ -251,35 +247,6 @@ impl Trainer {
             .collect();
         let _ = std::fs::remove_file(path); // it stays in the way of nobody
         Ok(())
-    }
-
-    fn remember(&mut self, shard: &Shard, row: usize) {
-        let row = shard.row(row);
-        let robots = shard.about.robots;
-        let metres = |from: &[f32], to: &[f32]| -> f64 {
-            let pairs = from.chunks_exact(2).zip(to.chunks_exact(2));
-            pairs.map(|(a, b)| f64::from((b[0] - a[0]).hypot(b[1] - a[1]))).sum()
-        };
-        let reward = self.plan.reward.reward(&row.terms, robots, metres(row.observation, row.next_observation));
-        let observation = self.scaled(row.observation);
-        let next_observation = self.scaled(row.next_observation);
-        let transition = Transition {
-            observation: &observation,
-            action: row.action,
-            reward: reward as f32,
-            terminated: row.terminated,
-            next_observation: &next_observation,
-        };
-        if row.truncated { self.learner.remember_truncated(transition) } else { self.learner.remember(transition) }
-    }
-
-    /// Positions (m) as the actor's contract gives them to it.
-    fn scaled(&self, metres: &[f32]) -> Vec<f32> {
-        let positions: Vec<Position> =
-            metres.chunks_exact(2).map(|xy| Position::new(f64::from(xy[0]), f64::from(xy[1]))).collect();
-        let mut input = vec![0.0; metres.len()];
-        self.contract.normalise(&positions, &mut input);
-        input
     }
 
     /// Hands the actor to the policy servers.
@@ -380,16 +347,4 @@ fn digest_of(folder: &PolicyFolder) -> Result<String, TrainError> {
         source,
     })?;
     Ok(sha256(&bytes))
-}
-
-/// The rows of each episode of a shard, in order.
-fn rows_by_episode(shard: &Shard) -> Vec<(u64, std::ops::Range<usize>)> {
-    let mut episodes: Vec<(u64, std::ops::Range<usize>)> = Vec::new();
-    for (row, transition) in shard.iter().enumerate() {
-        match episodes.last_mut() {
-            Some((episode, rows)) if *episode == transition.episode => rows.end = row + 1,
-            _ => episodes.push((transition.episode, row..row + 1)),
-        }
-    }
-    episodes
 }

@@ -170,6 +170,13 @@ impl Message {
         self
     }
 
+    /// Appends a double field.
+    pub fn double(mut self, field: u64, number: f64) -> Self {
+        self.raw_varint(field << 3 | 1);
+        self.0.extend_from_slice(&number.to_le_bytes());
+        self
+    }
+
     /// Appends bytes or a string.
     pub fn bytes(mut self, field: u64, bytes: impl AsRef<[u8]>) -> Self {
         let bytes = bytes.as_ref();
@@ -198,11 +205,12 @@ mod tests {
     #[test]
     fn what_is_written_is_read() {
         let inner = Message::new().bytes(1, "name");
-        let bytes = Message::new().varint(3, 300).float(2, 1.5).message(7, inner).finish();
+        let bytes = Message::new().varint(3, 300).float(2, 1.5).message(7, inner).double(8, -2.5).finish();
         let fields: Vec<_> = Fields::new(&bytes).collect::<Result<_, _>>().unwrap();
         assert_eq!(fields[0], (3, Value::Varint(300)));
         assert_eq!(fields[1], (2, Value::Fixed32(1.5f32.to_le_bytes())));
         assert_eq!(fields[2], (7, Value::Bytes(b"\x0a\x04name")));
+        assert_eq!(fields[3], (8, Value::Fixed64((-2.5f64).to_le_bytes())));
     }
 
     #[test]
