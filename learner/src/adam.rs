@@ -1,5 +1,7 @@
 //! Adam (Kingma and Ba 2015), with PyTorch's defaults for its constants.
 
+use crate::simd::wide;
+
 const BETA1: f64 = 0.9;
 const BETA2: f64 = 0.999;
 const EPSILON: f32 = 1e-8;
@@ -30,12 +32,14 @@ impl Adam {
         let (keep1, keep2) = (BETA1 as f32, BETA2 as f32);
         let (take1, take2) = ((1.0 - BETA1) as f32, (1.0 - BETA2) as f32);
         let moments = self.first.iter_mut().zip(&mut self.second);
-        for ((parameter, gradient), (first, second)) in parameters.iter_mut().zip(gradient).zip(moments) {
-            let gradient = gradient * factor;
-            *first = keep1 * *first + take1 * gradient;
-            *second = keep2 * *second + take2 * gradient * gradient;
-            *parameter -= step_size * *first / (second.sqrt() * correction + EPSILON);
-        }
+        wide(|| {
+            for ((parameter, gradient), (first, second)) in parameters.iter_mut().zip(gradient).zip(moments) {
+                let gradient = gradient * factor;
+                *first = keep1 * *first + take1 * gradient;
+                *second = keep2 * *second + take2 * gradient * gradient;
+                *parameter -= step_size * *first / (second.sqrt() * correction + EPSILON);
+            }
+        });
     }
 }
 

@@ -3,6 +3,7 @@
 use crate::adam::{Adam, clip_factor};
 use crate::network::{Network, Pass};
 use crate::settings::Settings;
+use crate::simd::wide;
 
 /// Two critics with the same task and different first weights; the smaller answer counts, because
 /// each alone overestimates.
@@ -149,8 +150,8 @@ impl Critics {
     pub fn move_targets(&mut self, rate: f64) {
         let rate = rate as f32;
         for critic in &mut self.pair {
-            let online = critic.online.parameters();
-            critic.target.parameters_mut().iter_mut().zip(online).for_each(|(t, q)| *t += rate * (q - *t));
+            let (target, online) = (critic.target.parameters_mut(), critic.online.parameters());
+            wide(|| target.iter_mut().zip(online).for_each(|(target, online)| *target += rate * (online - *target)));
         }
     }
 }

@@ -26,6 +26,7 @@ pub mod reward_weights;
 pub mod rollouts;
 pub mod sac;
 pub mod settings;
+pub mod simd;
 #[cfg(test)]
 mod small_problem_tests;
 pub mod squashed;

@@ -5,6 +5,7 @@
 //! each is one loop.
 
 use crate::matmul;
+use crate::simd::wide;
 use shared::random::{self, Use};
 use std::ops::Range;
 
@@ -103,13 +104,15 @@ impl Network {
             matmul::forward(&before[l], &self.parameters[layer.weight.clone()], output, pass.batch);
             let bias = &self.parameters[layer.bias.clone()];
             let floor = if l < last { 0.0 } else { f32::NEG_INFINITY };
-            for row in output.chunks_exact_mut(layer.outputs) {
-                for (value, bias) in row.iter_mut().zip(bias) {
-                    let sum = *value + bias;
-                    // Not f32::max: a NaN must stay one to be noticed.
-                    *value = if sum < floor { floor } else { sum };
+            wide(|| {
+                for row in output.chunks_exact_mut(layer.outputs) {
+                    for (value, bias) in row.iter_mut().zip(bias) {
+                        let sum = *value + bias;
+                        // Not f32::max: a NaN must stay one to be noticed.
+                        *value = if sum < floor { floor } else { sum };
+                    }
                 }
-            }
+            });
         }
     }
 
@@ -124,16 +127,21 @@ impl Network {
                 matmul::weight_gradient(delta, &pass.values[l], &mut gradient[layer.weight.clone()], batch);
                 let sums = &mut gradient[layer.bias.clone()];
                 sums.fill(0.0);
-                for row in delta.chunks_exact(layer.outputs) {
-                    sums.iter_mut().zip(row).for_each(|(sum, delta)| *sum += delta);
-                }
+                wide(|| {
+                    for row in delta.chunks_exact(layer.outputs) {
+                        sums.iter_mut().zip(row).for_each(|(sum, delta)| *sum += delta);
+                    }
+                });
             }
             let weight = &self.parameters[layer.weight.clone()];
             if let Some(below) = before.last_mut() {
                 matmul::input_gradient(delta, weight, below, batch);
-                for (delta, value) in below.iter_mut().zip(&pass.values[l]) {
-                    *delta = if *value > 0.0 { *delta } else { 0.0 };
-                }
+                let values = &pass.values[l];
+                wide(|| {
+                    for (delta, value) in below.iter_mut().zip(values) {
+                        *delta = if *value > 0.0 { *delta } else { 0.0 };
+                    }
+                });
             }
         }
         if let (Some(input_gradient), Some(layer)) = (input_gradient, self.layers.first()) {
