@@ -120,12 +120,12 @@ fn documents() -> Vec<PathBuf> {
 }
 
 /// The arguments that `run.sh` hands to the coordinator; `None` for what it does itself or hands to the
-/// policy server (whose heavy build this test does not need).
+/// policy server or the learner (whose heavy builds this test does not need).
 fn arguments(line: &str) -> Option<Vec<String>> {
     let command = line.trim().strip_prefix("./run.sh ")?.split(" #").next()?;
     let mut words: Vec<String> = command.split_whitespace().map(str::to_owned).collect();
     let first = words.first()?.clone();
-    if first == "test" || first == "policy" {
+    if ["test", "policy", "learn", "learner"].contains(&first.as_str()) {
         return None;
     }
     if first.starts_with(|c: char| c.is_ascii_digit()) || first.starts_with("--scenario") {
