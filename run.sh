@@ -40,6 +40,13 @@ policy) build policy-server; shift; exec "$target/release/policy-server" "$@" ;;
 esac
 case ${1-} in
 run) build coordinator agent ;;
+learn) build learner; exec "$target/release/learner" "$@" ;;
+learner) build learner; shift; exec "$target/release/learner" "$@" ;;
+train) # Rollouts are runs of real processes with the policy server.
+    build policy-server
+    build coordinator agent
+    build learner
+    exec "$target/release/learner" "$@" ;;
 *) build coordinator ;;
 esac
 exec "$target/release/coordinator" "$@"

@@ -7,12 +7,14 @@ root=$(cd "$(dirname "$0")/../.." && pwd)
 csv=${1:-$root/bench-runs/2026-11-22-learner/updates.csv}
 rounds=${2:-5}
 python=${3:-python3}
+learner=${CARGO_TARGET_DIR:-$root/target}/release/learner
+[ -x "$learner" ] || "$root/run.sh" learner --version
 mkdir -p "$(dirname "$csv")"
 echo "program,robots,batch,threads,updates,seconds,cpu_seconds,updates_per_second,updates_per_cpu_second" >"$csv"
 for _ in $(seq "$rounds"); do
     for threads in 1 2; do
         for robots in 2 14; do
-            "$root/run.sh" learner bench --no-heading --robots "$robots" --threads "$threads" | tee -a "$csv"
+            "$learner" bench --no-heading --robots "$robots" --threads "$threads" | tee -a "$csv"
             "$python" "$root/learner/bench/cleanrl_sac.py" bench --robots "$robots" --threads "$threads" | tee -a "$csv"
         done
     done

@@ -125,7 +125,7 @@ fn arguments(line: &str) -> Option<Vec<String>> {
     let command = line.trim().strip_prefix("./run.sh ")?.split(" #").next()?;
     let mut words: Vec<String> = command.split_whitespace().map(str::to_owned).collect();
     let first = words.first()?.clone();
-    if ["test", "policy", "learn", "learner"].contains(&first.as_str()) {
+    if ["test", "policy", "learn", "learner", "train"].contains(&first.as_str()) {
         return None;
     }
     if first.starts_with(|c: char| c.is_ascii_digit()) || first.starts_with("--scenario") {
