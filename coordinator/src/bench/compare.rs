@@ -30,8 +30,8 @@ impl Earlier {
     /// Reads `rows.csv` in `folder`.
     pub fn read(folder: &Path) -> Result<Self, CompareError> {
         let path = folder.join("rows.csv");
-        let text = std::fs::read_to_string(&path)
-            .map_err(|source| CompareError::Unreadable { path: path.clone(), source })?;
+        let text =
+            std::fs::read_to_string(&path).map_err(|source| CompareError::Unreadable { path: path.clone(), source })?;
         let mut lines = text.lines();
         if !lines.next().is_some_and(|header| header.starts_with("part,what,n,count,p50_us,")) {
             return Err(CompareError::Malformed { path });

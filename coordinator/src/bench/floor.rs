@@ -3,11 +3,11 @@
 //! The same work as an exchange: everybody is woken, reads the plans of all others of the tick before,
 //! writes its own and answers; the last one wakes the coordinator.
 
+use super::BenchError;
 use super::hop::OwnedPlace;
 use super::links::{PATIENCE, read_slot, write_slot};
 use super::partner::{Partner, PartnerArgs};
 use super::raw::{PLAN_WORDS, SharedPage, futex_wake, wait_until};
-use super::BenchError;
 use crate::latency::Latency;
 use std::hint::black_box;
 use std::path::{Path, PathBuf};
@@ -48,7 +48,12 @@ impl FloorTeam {
     }
 
     /// Runs `ticks` ticks, one every `period` or as fast as they go.
-    pub(super) fn run(&mut self, ticks: u64, period: Option<Duration>, latency: &mut Latency) -> Result<(), BenchError> {
+    pub(super) fn run(
+        &mut self,
+        ticks: u64,
+        period: Option<Duration>,
+        latency: &mut Latency,
+    ) -> Result<(), BenchError> {
         let all = |answered| answered as usize == self.members.len();
         let mut due = Instant::now();
         for _ in 0..ticks {

@@ -110,9 +110,7 @@ pub(super) fn link(kind: LinkKind, place: &Place, end: End) -> Result<(Box<dyn L
                     let (to, from) = (services.announcer(0)?, services.reports()?);
                     Box::new(EventFirst { to, from, _services: services })
                 }
-                End::Second(_) => {
-                    Box::new(EventSecond { to: services.reporter()?, from: services.announcements()? })
-                }
+                End::Second(_) => Box::new(EventSecond { to: services.reporter()?, from: services.announcements()? }),
             }
         }
     };
@@ -228,9 +226,7 @@ impl Link for Datagram {
         let mut bytes = [0u8; PLAN_WORDS * 8];
         let received = self.socket.recv(&mut bytes);
         received.map_err(|source| BenchError::System { what: "receive a datagram", source })?;
-        let word = |index: usize| {
-            bytes.as_chunks::<8>().0.get(index).map_or(0, |bytes| u64::from_le_bytes(*bytes))
-        };
+        let word = |index: usize| bytes.as_chunks::<8>().0.get(index).map_or(0, |bytes| u64::from_le_bytes(*bytes));
         Ok(Message { stamp: word(0), one_way: word(1), last: word(2) })
     }
 }

@@ -4,6 +4,7 @@
 //! sides. Read ratios first: digits belong to the machine that `machine.toml` describes.
 
 mod compare;
+mod dump;
 mod exchange;
 mod floor;
 mod hop;
@@ -21,7 +22,7 @@ mod still;
 mod teams;
 mod ticks;
 
-pub use compare::CompareError;
+pub use compare::{CompareError, Earlier};
 pub use row::Results;
 
 use crate::progress::Progress;
@@ -126,13 +127,16 @@ pub enum BenchError {
     /// The exchange.
     #[error(transparent)]
     Service(#[from] ServiceError),
+    /// Horizons.
+    #[error(transparent)]
+    Horizons(#[from] shared::horizon_source::HorizonSourceError),
     /// A scenario or parameters.
     #[error(transparent)]
-    SetUp(#[from] shared::scenario::SetUpError),
+    SetUp(#[from] shared::scenario::SetupError),
 }
 
 /// How much is measured, and how that is told.
-pub(self) struct Extent<'a> {
+struct Extent<'a> {
     options: &'a Options,
     stop: &'a StopFlag,
     progress: RefCell<Progress>,

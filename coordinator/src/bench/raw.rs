@@ -55,8 +55,7 @@ impl SharedPage {
     fn map(file: &File, words: usize, slots: usize) -> Result<Self, BenchError> {
         let (size, access) = (Self::size(words, slots), libc::PROT_READ | libc::PROT_WRITE);
         // SAFETY: a new mapping of a file of at least this size; nothing else of ours lies there.
-        let start =
-            unsafe { libc::mmap(std::ptr::null_mut(), size, access, libc::MAP_SHARED, file.as_raw_fd(), 0) };
+        let start = unsafe { libc::mmap(std::ptr::null_mut(), size, access, libc::MAP_SHARED, file.as_raw_fd(), 0) };
         if start == libc::MAP_FAILED {
             return Err(system("map a shared page"));
         }

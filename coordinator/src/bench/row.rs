@@ -95,7 +95,8 @@ impl Results {
     }
 
     fn table<'a>(&self, rows: impl Iterator<Item = &'a Row>, earlier: &Earlier, with_part: bool) -> TextTable {
-        let mut header = vec!["what", "n", "count", "p50_us", "p90_us", "p99_us", "p999_us", "max_us", "floor_us", "ratio"];
+        let mut header =
+            vec!["what", "n", "count", "p50_us", "p90_us", "p99_us", "p999_us", "max_us", "floor_us", "ratio"];
         if with_part {
             header.insert(0, "part");
         }

@@ -2,8 +2,10 @@
 
 use super::{BenchError, partner};
 use crate::launch::Program;
+use crate::policy::PolicyOptions;
 use crate::record::{PARAMS_FILE, RecordError, RunFolder, SCENARIO_FILE};
-use crate::run::{Options, Outcome, Team, Tick, Verdict};
+use crate::run::{Options, Outcome, Tick, Verdict};
+use crate::team::Team;
 use shared::exchange::Kind;
 use shared::metrics::RunMetrics;
 use shared::params::Profile;
@@ -61,6 +63,16 @@ pub(super) fn drive(
     stop: &StopFlag,
     observe: &mut dyn FnMut(&Tick<'_>) -> Result<(), BenchError>,
 ) -> Result<Driven, BenchError> {
+    drive_with(spec, None, stop, observe)
+}
+
+/// [`drive`] with horizons of a policy.
+pub(super) fn drive_with(
+    spec: &TeamSpec<'_>,
+    policy: Option<PolicyOptions>,
+    stop: &StopFlag,
+    observe: &mut dyn FnMut(&Tick<'_>) -> Result<(), BenchError>,
+) -> Result<Driven, BenchError> {
     let profile = if spec.load == Load::Paper { Profile::Paper } else { Profile::Safe };
     let (mut scenario, params) = set_up(Some(spec.scenario), None, profile, &[])?;
     scenario.max_ticks = spec.ticks;
@@ -78,14 +90,16 @@ pub(super) fn drive(
     let mut options = Options::new(folder.path(), &scenario).map_err(crate::run::RunError::from)?;
     options.exchange = spec.kind.unwrap_or(Kind::default_for(robots));
     options.real_time = spec.real_time;
+    if policy.is_some() {
+        options.horizons = shared::team::POLICY.into();
+        options.policy = policy;
+    }
     options.tick_deadline = Duration::from_secs(20); // a busy machine shall spoil a figure, not the benchmark
     options.start_patience = Duration::from_secs(120);
     if spec.load == Load::NoQp {
         let path = std::env::current_exe().map_err(|source| BenchError::System { what: "find itself", source })?;
-        options.agents = crate::launch::Agents::Launch(Program {
-            path,
-            arguments: vec![partner::COMMAND.into(), "still".into()],
-        });
+        options.agents =
+            crate::launch::Agents::Launch(Program { path, arguments: vec![partner::COMMAND.into(), "still".into()] });
     }
     let (mut metrics, mut failed, mut driven) = (RunMetrics::new(&scenario, &params), None, Driven::default());
     let mut first = 0;
@@ -102,11 +116,11 @@ pub(super) fn drive(
         driven.driving = Duration::from_nanos(tick.collected.saturating_sub(first));
         if let Err(error) = observe(tick) {
             failed = Some(error);
-            return Ok(Verdict::Arrived);
+            return Ok(Verdict::Over);
         }
         metrics.observe(tick.tick, tick.steps);
         let arrived = spec.load != Load::NoQp && metrics.arrived_all();
-        Ok(if arrived { Verdict::Arrived } else { Verdict::Continue })
+        Ok(if arrived { Verdict::Over } else { Verdict::Continue })
     })?;
     if let Some(error) = failed {
         return Err(error);

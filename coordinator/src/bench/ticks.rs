@@ -5,6 +5,7 @@ use super::teams::{Load, TeamSpec, drive};
 use super::{BenchError, Extent};
 use crate::in_process::run_whole;
 use shared::exchange::Kind;
+use shared::horizon::Horizon;
 use shared::horizon_source::{HorizonSource, HorizonSpec};
 use shared::params::Profile;
 use shared::scenario::set_up;
@@ -36,9 +37,8 @@ pub(super) fn run(extent: &Extent<'_>, results: &mut Results) -> Result<(), Benc
     }
     let (mut scenario, params) = set_up(Some(SCENARIO), None, Profile::Safe, &[])?;
     scenario.max_ticks = extent.pick(scenario.max_ticks, 5);
-    let spec = HorizonSpec::Fixed(vec![shared::horizon::Horizon::saturating(20)]);
-    let source = HorizonSource::new(&spec, scenario.robots.len(), scenario.seed, params.horizon.jitter)
-        .map_err(|error| BenchError::Team { robots: scenario.robots.len(), reason: error.to_string() })?;
+    let spec = HorizonSpec::Fixed(vec![Horizon::saturating(20)]);
+    let source = HorizonSource::new(&spec, scenario.robots.len(), scenario.seed, params.horizon.jitter)?;
     let (mut ticks, start) = (0, Instant::now());
     for _ in 0..extent.pick(40, 1) {
         ticks += run_whole(&scenario, &params, &source, |_| {}).ticks;
