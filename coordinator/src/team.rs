@@ -27,6 +27,8 @@ use std::time::{Duration, Instant};
 
 /// How often a waiting coordinator looks for signals and ended processes.
 const LOOK_AROUND: Duration = Duration::from_millis(50);
+/// Waiting for an event may take this much longer than it was told to.
+const COARSE: Duration = Duration::from_millis(15);
 /// How long robots have to end by themselves when all is well.
 const GRACE: Duration = Duration::from_millis(1200);
 /// And when one of them was lost.
@@ -331,7 +333,14 @@ impl Team {
             if remaining.is_zero() {
                 return Ok(Wait::Done);
             }
-            self.hub.wait(remaining.min(LOOK_AROUND))?;
+            // Waiting for an event is only as exact as the kernel's coarse timer, some ms; a sleep is exact.
+            match remaining.checked_sub(COARSE) {
+                Some(rest) if !rest.is_zero() => self.hub.wait(rest.min(LOOK_AROUND))?,
+                _ => {
+                    std::thread::sleep(remaining);
+                    continue;
+                }
+            }
             if let Some(lost) = self.roster.find_ended(Some(tick)) {
                 return Ok(Wait::Lost(lost));
             }

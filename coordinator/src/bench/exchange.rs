@@ -2,7 +2,7 @@
 //! the same number of processes. At full speed floor and product take turns within one run.
 
 use super::floor::FloorTeam;
-use super::row::{Results, Row};
+use super::row::{Results, Row, TICK_PARTS};
 use super::teams::{Load, TeamSpec, drive};
 use super::{BenchError, Extent};
 use crate::latency::Latency;
@@ -26,10 +26,10 @@ const KINDS: [(Kind, &str); 2] = [(Kind::Peer, "peer"), (Kind::Relay, "relay")];
 
 /// Measures every combination.
 pub(super) fn run(extent: &Extent<'_>, results: &mut Results) -> Result<(), BenchError> {
-    let sizes: &[usize] = extent.pick(&ROBOTS[..], &[2, 3]);
+    let sizes = extent.sizes(&ROBOTS, &[2, 3]);
     let teams = |robots: &usize| if *robots > MOST_PEERS { 1 } else { 2 };
     extent.tell("exchange", sizes.iter().map(teams).sum::<usize>() * Load::ALL.len() * 2 + sizes.len());
-    for &robots in sizes {
+    for &robots in &sizes {
         let mut floor = FloorTeam::start(robots)?;
         full_speed(extent, robots, &mut floor, results)?;
         real_time(extent, robots, &mut floor, results)?;
@@ -71,9 +71,11 @@ fn full_speed(
         all_floors.add(&beside);
         rows.push(Row::new("exchange", &name, Some(robots), latency).over(Some(beside.percentiles().p50_us)));
         if load != Load::Paper {
-            for (part, latency) in PARTS.into_iter().zip(by_part) {
+            // Robots without a QP neither detect nor solve.
+            let measured = PARTS.into_iter().zip(by_part).filter(|(_, latency)| latency.percentiles().max_us > 0.002);
+            for (part, latency) in measured {
                 let name = format!("{kind_name}, {load_name}: {part}");
-                rows.push(Row::new("tick parts", name, Some(robots), latency));
+                rows.push(Row::new(TICK_PARTS, name, Some(robots), latency));
             }
         }
         extent.advance()?;

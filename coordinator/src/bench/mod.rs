@@ -15,7 +15,7 @@ mod plots;
 mod policy;
 mod qp;
 mod raw;
-mod row;
+pub mod row;
 mod scale;
 mod step;
 mod still;
@@ -75,6 +75,8 @@ pub struct Options {
     pub part: Part,
     /// So briefly that only the form of the results means anything.
     pub quick: bool,
+    /// Sizes of teams, instead of the usual ones.
+    pub robots: Option<Vec<usize>>,
     /// Where the QPs are written that `solver` measures, as JSON.
     pub dump: Option<PathBuf>,
     /// The ONNX Runtime library to measure beside the embedded back-end.
@@ -146,6 +148,14 @@ impl Extent<'_> {
     /// `full`, or `quick` where only the form counts.
     fn pick<T>(&self, full: T, quick: T) -> T {
         if self.options.quick { quick } else { full }
+    }
+
+    /// Sizes of teams: what was asked for, or `full`, or `quick` where only the form counts.
+    fn sizes(&self, full: &[usize], quick: &[usize]) -> Vec<usize> {
+        match &self.options.robots {
+            Some(robots) => robots.clone(),
+            None => self.pick(full, quick).to_vec(),
+        }
     }
 
     /// Part `name` has `steps` steps.

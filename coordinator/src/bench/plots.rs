@@ -1,6 +1,6 @@
 //! The plots: a tick's latency against the number of robots, and distributions.
 
-use super::row::{Results, Row};
+use super::row::{Results, Row, TICK_PARTS};
 use crate::figures::svg::{COLOURS, Chart, Labels};
 
 /// Every plot that the results allow, by file name.
@@ -14,7 +14,7 @@ pub(super) fn all(results: &Results) -> Vec<(String, String)> {
         let rows: Vec<&Row> = results.rows.iter().filter(|row| row.part == part).collect();
         // Of the exchange one size: the lines of all would hide each other.
         let chosen: Vec<&Row> = match part {
-            "tick parts" => continue,
+            TICK_PARTS => continue,
             "exchange" => {
                 rows.into_iter().filter(|row| row.size == Some(14) && row.name.ends_with("full speed")).collect()
             }
@@ -85,7 +85,7 @@ fn distributions(part: &str, rows: &[&Row]) -> Option<String> {
         title: &format!("{part}: share of durations up to a time"),
         x: "us",
         y: "%",
-        command: &format!("./run.sh bench {}", if part == "tick parts" { "exchange" } else { part }),
+        command: &format!("./run.sh bench {part}"),
     };
     let mut chart = Chart::new(&labels, times, [0.0, 100.0], false);
     chart.mark_x((times[0] as i32..=times[1] as i32).map(|power| (f64::from(power), power_of_ten(power))));

@@ -30,10 +30,10 @@ pub(super) fn run(extent: &Extent<'_>, results: &mut Results) -> Result<(), Benc
     let library = extent.options.onnxruntime.as_deref();
     let back_ends: Vec<(&str, Option<&Path>)> =
         [("embedded", None)].into_iter().chain(library.map(|file| ("ONNX Runtime", Some(file)))).collect();
-    let sizes: &[usize] = extent.pick(&ROBOTS[..], &[2]);
+    let sizes = extent.sizes(&ROBOTS, &[2]);
     extent.tell("policy", 2 * sizes.len() * back_ends.len());
     for (name, library) in back_ends {
-        for &robots in sizes {
+        for &robots in &sizes {
             let answer = inference(extent, &program, robots, library)?;
             let mut latency = Latency::new();
             answer.inference_ns.iter().for_each(|time| latency.record_ns(*time));

@@ -3,7 +3,11 @@
 use super::compare::Earlier;
 use crate::latency::Latency;
 use crate::text_table::TextTable;
+use crate::tick_parts::PARTS;
 use std::fmt::Write as _;
+
+/// Part of the rows that say where the time of a tick goes.
+pub const TICK_PARTS: &str = "tick parts";
 
 /// A distribution of durations.
 #[derive(Clone, Debug)]
@@ -61,6 +65,9 @@ impl Row {
 
 /// Three digits that count, for every size of number.
 fn digits(value: f64) -> String {
+    if value > 0.0 && value < 1e-3 {
+        return format!("{value:.1e}");
+    }
     let places = if value >= 100.0 { 0 } else { 2 - value.max(0.01).log10().floor() as i32 };
     format!("{value:.*}", places.clamp(0, 4) as usize)
 }
@@ -78,8 +85,12 @@ impl Results {
 
     /// The parts that have rows, each once, in order.
     pub fn parts(&self) -> Vec<&'static str> {
-        let mut parts: Vec<&'static str> = self.rows.iter().map(|row| row.part).collect();
-        parts.dedup();
+        let mut parts = Vec::new();
+        for row in &self.rows {
+            if !parts.contains(&row.part) {
+                parts.push(row.part);
+            }
+        }
         parts
     }
 
@@ -126,6 +137,28 @@ impl Results {
         table
     }
 
+    /// p50 of the parts of a tick, us: a row per team.
+    pub fn tick_parts_table(&self) -> TextTable {
+        let mut table = TextTable::new(&[&["team", "n"], &PARTS[..]].concat());
+        let mut teams: Vec<(&str, Option<usize>)> = Vec::new();
+        let rows: Vec<&Row> = self.rows.iter().filter(|row| row.part == TICK_PARTS).collect();
+        for row in &rows {
+            let Some((team, _)) = row.name.rsplit_once(": ") else { continue };
+            if !teams.contains(&(team, row.size)) {
+                teams.push((team, row.size));
+            }
+        }
+        for (team, size) in teams {
+            let cell = |part: &str| {
+                let wanted = |row: &&&Row| row.size == size && row.name.rsplit_once(": ") == Some((team, part));
+                rows.iter().find(wanted).map_or(String::new(), |row| digits(row.latency.percentiles().p50_us))
+            };
+            let size = size.map_or(String::new(), |size| size.to_string());
+            table.row([team.to_owned(), size].into_iter().chain(PARTS.map(cell)));
+        }
+        table
+    }
+
     /// The single numbers.
     pub fn figures_table(&self) -> TextTable {
         let mut table = TextTable::new(&["part", "what", "value", "unit"]);
@@ -159,7 +192,8 @@ mod tests {
         (1..=100).for_each(|n| latency.record_ns(n * 100));
         let mut results = Results::default();
         results.row(Row::new("hop", "a, busy", None, latency.clone()).over(Some(2.0)));
-        results.row(Row::new("exchange", "peer", Some(14), latency));
+        results.row(Row::new("exchange", "peer", Some(14), latency.clone()));
+        results.row(Row::new("hop", "b", None, latency));
         results.figure("scale", "start", 1.25, "s");
         results
     }
@@ -171,8 +205,20 @@ mod tests {
         assert_eq!(lines[0], "part,what,n,count,p50_us,p90_us,p99_us,p999_us,max_us,floor_us,ratio");
         assert_eq!(lines[1], "hop,\"a, busy\",,100,5.00,9.00,9.90,10.0,10.0,2.00,2.50");
         assert_eq!(lines[2], "exchange,peer,14,100,5.00,9.00,9.90,10.0,10.0,,");
-        assert_eq!(results().rows_table(Some("hop")).csv().lines().count(), 2);
+        assert_eq!(results().rows_table(Some("hop")).csv().lines().count(), 3);
         assert_eq!(results().parts(), ["hop", "exchange"]);
+    }
+
+    #[test]
+    fn parts_of_a_tick_stand_beside_each_other() {
+        let mut results = Results::default();
+        for (part, time) in PARTS.into_iter().zip(1..) {
+            let mut latency = Latency::new();
+            latency.record_ns(time * 1_000);
+            results.row(Row::new(TICK_PARTS, format!("peer, safe: {part}"), Some(14), latency));
+        }
+        let text = results.tick_parts_table().csv();
+        assert_eq!(text.lines().nth(1), Some("\"peer, safe\",14,1.00,2.00,3.00,4.00,5.00,6.00,7.00"), "{text}");
     }
 
     #[test]
@@ -180,11 +226,14 @@ mod tests {
         let text = results().histograms();
         let hop = text.lines().filter(|line| line.starts_with("hop,"));
         let count: u64 = hop.filter_map(|line| line.rsplit(',').next()?.parse::<u64>().ok()).sum();
-        assert_eq!(count, 100);
+        assert_eq!(count, 200);
     }
 
     #[test]
     fn numbers_have_three_digits_that_count() {
-        assert_eq!([0.0, 0.123_45, 1.234_5, 12.345, 1234.5].map(digits), ["0.0000", "0.123", "1.23", "12.3", "1234"]);
+        assert_eq!(
+            [0.0, 3.2e-9, 0.123_45, 1.234_5, 12.345, 1234.5].map(digits),
+            ["0.0000", "3.2e-9", "0.123", "1.23", "12.3", "1234"]
+        );
     }
 }

@@ -8,9 +8,9 @@ use crate::run::Tick;
 
 /// Measures teams in the form of exchange that is their default.
 pub(super) fn run(extent: &Extent<'_>, results: &mut Results) -> Result<(), BenchError> {
-    let sizes: &[usize] = extent.pick(&[14, 50, 100, 200], &[3]);
+    let sizes = extent.sizes(&[14, 50, 100, 200], &[3]);
     extent.tell("scale", sizes.len());
-    for &robots in sizes {
+    for &robots in &sizes {
         let scenario = format!("ring:{robots}");
         let ticks = extent.pick(150, 3);
         let spec = TeamSpec { scenario: &scenario, load: Load::Safe, kind: None, real_time: true, ticks };
