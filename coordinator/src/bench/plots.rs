@@ -16,7 +16,12 @@ pub(super) fn all(results: &Results) -> Vec<(String, String)> {
         let chosen: Vec<&Row> = match part {
             TICK_PARTS => continue,
             "exchange" => {
-                rows.into_iter().filter(|row| row.size == Some(14) && row.name.ends_with("full speed")).collect()
+                let size = if rows.iter().any(|row| row.size == Some(14)) {
+                    Some(14)
+                } else {
+                    rows.iter().map(|row| row.size).max().flatten()
+                };
+                rows.into_iter().filter(|row| row.size == size && row.name.ends_with("full speed")).collect()
             }
             _ => rows,
         };
