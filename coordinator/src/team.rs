@@ -27,8 +27,6 @@ use std::time::{Duration, Instant};
 
 /// How often a waiting coordinator looks for signals and ended processes.
 const LOOK_AROUND: Duration = Duration::from_millis(50);
-/// Waiting for an event may take this much longer than it was told to.
-const COARSE: Duration = Duration::from_millis(15);
 /// How long robots have to end by themselves when all is well.
 const GRACE: Duration = Duration::from_millis(1200);
 /// And when one of them was lost.
@@ -333,14 +331,7 @@ impl Team {
             if remaining.is_zero() {
                 return Ok(Wait::Done);
             }
-            // Waiting for an event is only as exact as the kernel's coarse timer, some ms; a sleep is exact.
-            match remaining.checked_sub(COARSE) {
-                Some(rest) if !rest.is_zero() => self.hub.wait(rest.min(LOOK_AROUND))?,
-                _ => {
-                    std::thread::sleep(remaining);
-                    continue;
-                }
-            }
+            std::thread::sleep(remaining.min(LOOK_AROUND));
             if let Some(lost) = self.roster.find_ended(Some(tick)) {
                 return Ok(Wait::Lost(lost));
             }
@@ -386,7 +377,7 @@ impl Team {
                 let how = format!("gave no answer for {:.1} s", (now - start).as_secs_f64());
                 return Ok(self.roster.first_missing(tick, how).map_or(Wait::Done, Wait::Lost));
             }
-            self.hub.wait((deadline - now).min(LOOK_AROUND))?;
+            self.hub.wait(self.roster.missing(), (deadline - now).min(LOOK_AROUND));
         }
     }
 

@@ -3,12 +3,12 @@
 //! The same work as an exchange: everybody is woken, reads the plans of all others of the tick before,
 //! writes its own and answers; the last one wakes the coordinator.
 
-use super::BenchError;
 use super::hop::OwnedPlace;
 use super::links::{PATIENCE, read_slot, write_slot};
 use super::partner::{Partner, PartnerArgs};
-use super::raw::{PLAN_WORDS, SharedPage, futex_wake, wait_until};
+use super::{BenchError, failed};
 use crate::latency::Latency;
+use shared::raw::{PLAN_WORDS, SharedPage, futex_wake, wait_until};
 use std::hint::black_box;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
@@ -39,7 +39,7 @@ impl FloorTeam {
     pub(super) fn start(members: usize) -> Result<Self, BenchError> {
         let place = OwnedPlace::create()?;
         let path = PathBuf::from(format!("/dev/shm/{}floor", place.0.prefix));
-        let page = SharedPage::create(&path, WORDS, 2 * members)?;
+        let page = SharedPage::create(&path, WORDS, 2 * members).map_err(failed("make a shared page"))?;
         let start = |member| Partner::start(PartnerArgs::Floor { page: path.clone(), members, member });
         let partners = (0..members).map(start).collect::<Result<Vec<_>, _>>()?;
         let all = |ready| ready as usize == members;
@@ -83,7 +83,7 @@ impl Drop for FloorTeam {
 
 /// One member, until it is stopped.
 pub(super) fn take_part(path: &Path, members: usize, member: usize) -> Result<(), BenchError> {
-    let page = SharedPage::open(path, WORDS, 2 * members)?;
+    let page = SharedPage::open(path, WORDS, 2 * members).map_err(failed("open a shared page"))?;
     let mut seen = page.word(TICK).load(Ordering::Acquire);
     answer(&page, READY, members);
     let mut plan = [0; PLAN_WORDS];

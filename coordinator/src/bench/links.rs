@@ -1,10 +1,12 @@
 //! The ways by which a message of the size of a plan gets from one process to another.
 
-use super::BenchError;
-use super::raw::{EventFd, PLAN_WORDS, SharedPage, futex_wake, wait_until};
-use shared::messages::{Announcement, Plan, Report, kind, order};
+use super::{BenchError, failed};
+use shared::messages::{Announcement, MAX_ROBOTS, Observation, Plan, PolicyAnswer, Report, kind, order};
 use shared::place::Place;
-use shared::services::{Announcements, Announcer, Receiver, Reporter, Reports, Sender, Services};
+use shared::raw::{EventFd, PLAN_WORDS, SharedPage, futex_wake, wait_until};
+use shared::services::{
+    Announcements, Announcer, PolicyAsker, PolicyPort, Receiver, Reporter, Reports, Sender, Services,
+};
 use std::os::unix::net::UnixDatagram;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -26,18 +28,21 @@ pub(super) enum LinkKind {
     Datagram,
     /// iceoryx2 publish-subscribe, the reader looks without pause
     IceoryxBusy,
-    /// iceoryx2 publish-subscribe and event
+    /// iceoryx2 publish-subscribe and a futex, as the team
+    IceoryxTeam,
+    /// iceoryx2 publish-subscribe and event, as the policy server
     IceoryxEvent,
 }
 
 impl LinkKind {
     /// All of them with their names in tables, floors first.
-    pub(super) const ALL: [(LinkKind, &'static str); 6] = [
+    pub(super) const ALL: [(LinkKind, &'static str); 7] = [
         (Self::PageSpin, "shared page, busy"),
         (Self::Futex, "futex"),
         (Self::Eventfd, "eventfd"),
         (Self::Datagram, "unix datagram"),
         (Self::IceoryxBusy, "iceoryx2, busy"),
+        (Self::IceoryxTeam, "iceoryx2, futex"),
         (Self::IceoryxEvent, "iceoryx2, event"),
     ];
 
@@ -80,8 +85,8 @@ pub(super) fn link(kind: LinkKind, place: &Place, end: End) -> Result<(Box<dyn L
     let page = || {
         let path = PathBuf::from(format!("/dev/shm/{}page", place.prefix));
         match end {
-            End::First => SharedPage::create(&path, 2, 2),
-            End::Second(_) => SharedPage::open(&path, 2, 2),
+            End::First => SharedPage::create(&path, 2, 2).map_err(failed("make a shared page")),
+            End::Second(_) => SharedPage::open(&path, 2, 2).map_err(failed("open a shared page")),
         }
     };
     let me = usize::from(end != End::First);
@@ -91,7 +96,10 @@ pub(super) fn link(kind: LinkKind, place: &Place, end: End) -> Result<(Box<dyn L
         LinkKind::Futex => Box::new(Paged { page: page()?, me, seen: 0, waiting: Waiting::Futex }),
         LinkKind::Eventfd => {
             let (ours, theirs) = match end {
-                End::First => (EventFd::new()?, EventFd::new()?),
+                End::First => (
+                    EventFd::new().map_err(failed("make an eventfd"))?,
+                    EventFd::new().map_err(failed("make an eventfd"))?,
+                ),
                 End::Second([ours, theirs]) => (EventFd::inherited(ours), EventFd::inherited(theirs)),
             };
             numbers = [theirs.number(), ours.number()];
@@ -103,14 +111,18 @@ pub(super) fn link(kind: LinkKind, place: &Place, end: End) -> Result<(Box<dyn L
             let ports = services.plans()?.ok_or(BenchError::Silent { who: "the service of plans" })?;
             Box::new(Busy { ports, me: me as u32, _services: services })
         }
-        LinkKind::IceoryxEvent => {
+        LinkKind::IceoryxEvent => match end {
+            End::First => Box::new(EventFirst(PolicyAsker::create(place)?)),
+            End::Second(_) => Box::new(EventSecond(PolicyPort::open(place)?)),
+        },
+        LinkKind::IceoryxTeam => {
             let services = services(place, end)?;
             match end {
                 End::First => {
                     let (to, from) = (services.announcer(0)?, services.reports()?);
-                    Box::new(EventFirst { to, from, _services: services })
+                    Box::new(TeamFirst { to, from, _services: services })
                 }
-                End::Second(_) => Box::new(EventSecond { to: services.reporter()?, from: services.announcements()? }),
+                End::Second(_) => Box::new(TeamSecond { to: services.reporter()?, from: services.announcements()? }),
             }
         }
     };
@@ -161,7 +173,7 @@ impl Link for Paged {
                 futex_wake(word, 1);
                 Ok(())
             }
-            Waiting::Event { theirs, .. } => theirs.signal(),
+            Waiting::Event { theirs, .. } => theirs.signal().map_err(failed("signal an eventfd")),
         }
     }
 
@@ -170,7 +182,7 @@ impl Link for Paged {
         let there = match &self.waiting {
             Waiting::Spin => spin_until(|| (word.load(Ordering::Acquire) != seen).then_some(())).is_some(),
             Waiting::Futex => wait_until(word, PATIENCE, |value| value != seen).is_some(),
-            Waiting::Event { ours, .. } => ours.wait(PATIENCE)?,
+            Waiting::Event { ours, .. } => ours.wait(PATIENCE).map_err(failed("wait for an eventfd"))?,
         };
         if !there {
             return Err(BenchError::Silent { who: "the other end of a link" });
@@ -204,10 +216,9 @@ struct Datagram {
 
 impl Datagram {
     fn new(folder: &Path, me: usize) -> Result<Self, BenchError> {
-        let failed = |source| BenchError::System { what: "make a datagram socket", source };
         let path = |end: usize| folder.join(format!("bench-{end}"));
-        let socket = UnixDatagram::bind(path(me)).map_err(failed)?;
-        socket.set_read_timeout(Some(PATIENCE)).map_err(failed)?;
+        let socket = UnixDatagram::bind(path(me)).map_err(failed("make a datagram socket"))?;
+        socket.set_read_timeout(Some(PATIENCE)).map_err(failed("make a datagram socket"))?;
         Ok(Self { socket, other: path(1 - me) })
     }
 }
@@ -219,13 +230,13 @@ impl Link for Datagram {
             to.copy_from_slice(&word.to_le_bytes());
         }
         let sent = self.socket.send_to(&bytes, &self.other);
-        sent.map(|_| ()).map_err(|source| BenchError::System { what: "send a datagram", source })
+        sent.map(|_| ()).map_err(failed("send a datagram"))
     }
 
     fn receive(&mut self) -> Result<Message, BenchError> {
         let mut bytes = [0u8; PLAN_WORDS * 8];
         let received = self.socket.recv(&mut bytes);
-        received.map_err(|source| BenchError::System { what: "receive a datagram", source })?;
+        received.map_err(failed("receive a datagram"))?;
         let word = |index: usize| bytes.as_chunks::<8>().0.get(index).map_or(0, |bytes| u64::from_le_bytes(*bytes));
         Ok(Message { stamp: word(0), one_way: word(1), last: word(2) })
     }
@@ -263,13 +274,13 @@ impl Link for Busy {
     }
 }
 
-struct EventFirst {
+struct TeamFirst {
     to: Announcer,
     from: Reports,
     _services: Services,
 }
 
-impl Link for EventFirst {
+impl Link for TeamFirst {
     fn send(&mut self, message: Message) -> Result<(), BenchError> {
         let announcement = Announcement { order: order::TICK, plans: 1, ..Default::default() };
         Ok(self.to.announce(&announcement, &[plan_of(message, 0)])?)
@@ -281,18 +292,18 @@ impl Link for EventFirst {
             if let Some(report) = self.from.receive()? {
                 return Ok(message_of(&report.plan));
             }
-            self.from.wait(PATIENCE)?;
+            self.from.wait(1, PATIENCE);
         }
         Err(BenchError::Silent { who: "the other end of a link" })
     }
 }
 
-struct EventSecond {
+struct TeamSecond {
     to: Reporter,
     from: Announcements,
 }
 
-impl Link for EventSecond {
+impl Link for TeamSecond {
     fn send(&mut self, message: Message) -> Result<(), BenchError> {
         Ok(self.to.report(Report { plan: plan_of(message, 1), ..Report::presence(0, 1, kind::STEP) })?)
     }
@@ -304,7 +315,48 @@ impl Link for EventSecond {
             if let Some(message) = received {
                 return Ok(message);
             }
-            self.from.wait(PATIENCE)?;
+            self.from.wait(PATIENCE);
+        }
+        Err(BenchError::Silent { who: "the other end of a link" })
+    }
+}
+
+struct EventFirst(PolicyAsker);
+
+impl Link for EventFirst {
+    fn send(&mut self, message: Message) -> Result<(), BenchError> {
+        let Message { stamp, one_way, last } = message;
+        let positions = [[0.0; 2]; MAX_ROBOTS];
+        Ok(self.0.ask(Observation { epoch: last, tick: one_way, stamp, robots: 0, positions })?)
+    }
+
+    fn receive(&mut self) -> Result<Message, BenchError> {
+        let start = Instant::now();
+        while start.elapsed() < PATIENCE {
+            if let Some(PolicyAnswer { stamp, tick, epoch, .. }) = self.0.receive()? {
+                return Ok(Message { stamp, one_way: tick, last: epoch });
+            }
+            self.0.wait(PATIENCE)?;
+        }
+        Err(BenchError::Silent { who: "the other end of a link" })
+    }
+}
+
+struct EventSecond(PolicyPort);
+
+impl Link for EventSecond {
+    fn send(&mut self, message: Message) -> Result<(), BenchError> {
+        let Message { stamp, one_way, last } = message;
+        Ok(self.0.answer(PolicyAnswer { epoch: last, tick: one_way, stamp, ..PolicyAnswer::EMPTY })?)
+    }
+
+    fn receive(&mut self) -> Result<Message, BenchError> {
+        let start = Instant::now();
+        while start.elapsed() < PATIENCE {
+            if let Some(Observation { stamp, tick, epoch, .. }) = self.0.newest()? {
+                return Ok(Message { stamp, one_way: tick, last: epoch });
+            }
+            self.0.wait(PATIENCE)?;
         }
         Err(BenchError::Silent { who: "the other end of a link" })
     }

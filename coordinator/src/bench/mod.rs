@@ -14,7 +14,6 @@ pub mod partner;
 mod plots;
 mod policy;
 mod qp;
-mod raw;
 pub mod row;
 mod scale;
 mod step;
@@ -135,6 +134,11 @@ pub enum BenchError {
     /// A scenario or parameters.
     #[error(transparent)]
     SetUp(#[from] shared::scenario::SetupError),
+}
+
+/// For `map_err`: the system refused `what`.
+fn failed(what: &'static str) -> impl Fn(std::io::Error) -> BenchError {
+    move |source| BenchError::System { what, source }
 }
 
 /// How much is measured, and how that is told.
