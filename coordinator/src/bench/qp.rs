@@ -62,7 +62,7 @@ pub(super) fn run(extent: &Extent<'_>, results: &mut Results) -> Result<(), Benc
     }
     let found = check.found();
     results.figure("solver", "QPs compared with Clarabel at 1e-10", found.problems as f64, "");
-    results.figure("solver", "largest difference of an input, |du|", found.largest_difference, "m/s");
+    results.figure("solver", "largest difference of an input", found.largest_difference, "m/s");
     results.figure("solver", "verdicts that differ", found.verdicts_differ as f64, "");
     changing_horizons(extent, results)?;
     match &extent.options.dump {
