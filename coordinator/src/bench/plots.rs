@@ -75,10 +75,11 @@ fn against_robots(results: &Results, pace: &str) -> Option<String> {
             .filter(|row| row.name == *name)
             .filter_map(|row| Some([(row.size? as f64).log10(), p50(row).log10()]))
             .collect();
-        let colour = COLOURS[index % COLOURS.len()];
-        chart.line(&points, colour, "");
-        chart.key(index, colour, name.trim_end_matches(pace).trim_end_matches(", "));
+        chart.line(&points, COLOURS[index % COLOURS.len()], "");
     }
+    let short = |name: &&str| name.trim_end_matches(pace).trim_end_matches(", ").to_owned();
+    let keys = names.iter().enumerate().map(|(index, name)| (COLOURS[index % COLOURS.len()], short(name)));
+    chart.keys(keys, false);
     Some(chart.finish())
 }
 
@@ -107,9 +108,10 @@ fn distributions(part: &str, rows: &[&Row]) -> Option<String> {
             })
             .collect();
         chart.line(&points, COLOURS[index % COLOURS.len()], "");
-        let size = row.size.map_or(String::new(), |size| format!(", n = {size}"));
-        chart.key(index, COLOURS[index % COLOURS.len()], &format!("{}{size}", row.name));
     }
+    let name = |row: &&Row| format!("{}{}", row.name, row.size.map_or(String::new(), |size| format!(", n = {size}")));
+    let keys = rows.iter().enumerate().map(|(index, row)| (COLOURS[index % COLOURS.len()], name(row)));
+    chart.keys(keys, true);
     Some(chart.finish())
 }
 

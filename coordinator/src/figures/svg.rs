@@ -79,19 +79,27 @@ impl Chart {
     /// These words along the x axis.
     pub(crate) fn mark_x(&mut self, marks: impl Iterator<Item = (f64, String)>) {
         for (value, text) in marks {
-            self.text(self.x(value), self.height - BOTTOM + 16.0, "middle", &text);
+            let at = self.x(value);
+            let anchor = if at > WIDTH - RIGHT - 1.0 { "end" } else { "middle" };
+            self.text(at, self.height - BOTTOM + 16.0, anchor, &text);
         }
     }
 
-    /// Line `index` of a list in the upper left corner: a colour and what it means.
-    pub(crate) fn key(&mut self, index: usize, colour: &str, text: &str) {
-        let at = TOP + 16.0 + 15.0 * index as f64;
-        self.add(format_args!(
-            "<rect x=\"{:.1}\" y=\"{:.1}\" width=\"10\" height=\"10\" fill=\"{colour}\"/>",
-            LEFT + 8.0,
-            at - 9.0
-        ));
-        self.text(LEFT + 24.0, at, "start", text);
+    /// Colours and what they mean, one below the other: in the upper left corner, or the lower right one.
+    pub(crate) fn keys<'a>(&mut self, entries: impl ExactSizeIterator<Item = (&'a str, String)>, lower_right: bool) {
+        let height = 15.0 * entries.len() as f64;
+        let (left, top) = match lower_right {
+            true => (WIDTH - RIGHT - 240.0, self.height - BOTTOM - height),
+            false => (LEFT + 8.0, TOP + 16.0),
+        };
+        for (index, (colour, text)) in entries.enumerate() {
+            let at = top + 15.0 * index as f64;
+            self.add(format_args!(
+                "<rect x=\"{left:.1}\" y=\"{:.1}\" width=\"10\" height=\"10\" fill=\"{colour}\"/>",
+                at - 9.0
+            ));
+            self.text(left + 16.0, at, "start", &text);
+        }
     }
 
     fn add(&mut self, element: std::fmt::Arguments<'_>) {
