@@ -34,12 +34,16 @@ case " $* " in
 *" --policy "* | *" --policy="* | *policy:*) server=policy-server ;;
 *) server= ;;
 esac
+case " $* " in
+*" solver "* | *" step "* | *" exchange "* | *" hop "* | *" scale "* | *" --help "*) ;;
+" bench "*) server=policy-server ;;
+esac
 case ${1-} in
 policy) build policy-server; shift; exec "$target/release/policy-server" "$@" ;;
 *) [ -z "$server" ] || build "$server" ;;
 esac
 case ${1-} in
-run) build coordinator agent ;;
+run | bench | rollout) build coordinator agent ;;
 learn) build learner; exec "$target/release/learner" "$@" ;;
 learner) build learner; shift; exec "$target/release/learner" "$@" ;;
 train) # Rollouts are runs of real processes with the policy server.

@@ -46,15 +46,22 @@ impl Hearing {
             neighbour.present = Some((tick + 1, plan.state(1)));
             neighbour.set_point = plan.set_point;
         }
+        let news = !lost && !self.is_lost(plan_loss, tick, sender, 1);
+        if plan_delay == 0 {
+            match &mut self.neighbours[sender].plan {
+                _ if !news => {}
+                Some((at, held)) => {
+                    *at = tick;
+                    held.clone_from(plan);
+                }
+                none => *none = Some((tick, plan.clone())),
+            }
+            return;
+        }
         // What is under way moves on even when this message is lost: otherwise a plan would stay in its
         // slot and arrive after newer ones.
-        let news = (!lost && !self.is_lost(plan_loss, tick, sender, 1)).then(|| (tick, plan.clone()));
-        let arrived = if plan_delay == 0 {
-            news
-        } else {
-            let slot = sender * plan_delay + (tick as usize) % plan_delay;
-            std::mem::replace(&mut self.under_way[slot], news)
-        };
+        let slot = sender * plan_delay + (tick as usize) % plan_delay;
+        let arrived = std::mem::replace(&mut self.under_way[slot], news.then(|| (tick, plan.clone())));
         if arrived.is_some() {
             self.neighbours[sender].plan = arrived;
         }

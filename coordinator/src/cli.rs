@@ -1,7 +1,8 @@
 //! The command line: one subcommand per file of `commands/`.
 
+use crate::bench::partner;
 use crate::commands::{
-    compare, evaluate, figures, golden, params, replay, report, rollout, run, scenario, search, sweep, verify,
+    bench, compare, evaluate, figures, golden, params, replay, report, rollout, run, scenario, search, sweep, verify,
 };
 use crate::exit::Ending;
 use clap::{Parser, Subcommand};
@@ -53,6 +54,11 @@ enum Command {
     Scenario(scenario::Args),
     /// List all parameters: value, unit, range, effect
     Params(params::Args),
+    /// Measure latencies and times beside their floors and beside others
+    Bench(bench::Args),
+    /// Another process of a benchmark (started by `bench`, not by people)
+    #[command(hide = true, name = partner::COMMAND)]
+    Partner(partner::Args),
 }
 
 impl Cli {
@@ -72,6 +78,8 @@ impl Cli {
             Command::Figures(args) => figures::run(args),
             Command::Scenario(args) => scenario::run(args),
             Command::Params(args) => params::run(args),
+            Command::Bench(args) => bench::run(args),
+            Command::Partner(args) => partner::run(args),
         }
     }
 }

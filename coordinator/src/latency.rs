@@ -59,6 +59,18 @@ impl Latency {
         coarse.iter_recorded().map(|value| (value.value_iterated_to(), value.count_at_value())).collect()
     }
 
+    /// Adds all durations of `other`.
+    pub fn add(&mut self, other: &Self) {
+        for value in other.0.iter_recorded() {
+            self.0.saturating_record_n(value.value_iterated_to(), value.count_at_value());
+        }
+    }
+
+    /// Mean of the durations, us; 0 when nothing was recorded.
+    pub fn mean_us(&self) -> f64 {
+        self.0.mean() / 1e3
+    }
+
     /// The figures so far; all 0 when nothing was recorded.
     pub fn percentiles(&self) -> Percentiles {
         if self.0.is_empty() {
@@ -104,6 +116,10 @@ mod tests {
         (1..=1000).for_each(|n| latency.record(Duration::from_micros(n)));
         let buckets = latency.buckets();
         assert_eq!(buckets.iter().map(|(_, count)| count).sum::<u64>(), 1000);
+        let mut sum = latency.clone();
+        sum.add(&latency);
+        assert_eq!(sum.percentiles().count, 2000);
+        assert!((sum.mean_us() - 500.5).abs() < 1.0, "{}", sum.mean_us());
         assert!(buckets.len() < 600 && buckets.windows(2).all(|pair| pair[0].0 < pair[1].0), "{}", buckets.len());
     }
 

@@ -23,7 +23,7 @@ pub enum Agents {
 pub struct Program {
     /// Where it is.
     pub path: PathBuf,
-    /// Arguments beside those that every robot gets.
+    /// Arguments before those that every robot gets.
     pub arguments: Vec<String>,
 }
 
@@ -89,10 +89,10 @@ pub fn start(program: &Program, run: &Path, robot: usize) -> Result<Child, Launc
     let stderr = File::create(&log).map_err(refused(&log))?;
     let stdout = stderr.try_clone().map_err(refused(&log))?;
     Command::new(&program.path)
+        .args(&program.arguments)
         .arg("--run")
         .arg(run)
         .args(["--robot", &robot.to_string(), "--parent", &std::process::id().to_string()])
-        .args(&program.arguments)
         .stdin(Stdio::null())
         .stdout(stdout)
         .stderr(stderr)

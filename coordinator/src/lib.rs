@@ -2,6 +2,7 @@
 //!
 //! Offline commands (sweep, compare, golden, replay) run whole teams in this process.
 
+pub mod bench;
 pub mod cli;
 pub mod clock;
 pub mod commands;

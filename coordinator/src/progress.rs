@@ -36,6 +36,11 @@ impl Progress {
         Self(bar)
     }
 
+    /// What the pieces are.
+    pub fn say(&self, what: &'static str) {
+        self.0.set_message(what);
+    }
+
     /// One piece of work is done.
     pub fn advance(&self) {
         self.0.inc(1);

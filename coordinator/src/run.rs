@@ -176,6 +176,9 @@ pub struct Tick<'a> {
     pub actions: &'a [f32],
     /// When what happened to every robot, by robot number.
     pub stamps: &'a [Stamps],
+    /// When a policy was asked for the tick's horizons, ns of the monotonic clock; without a policy when
+    /// the tick could have been announced.
+    pub asked: u64,
     /// When the tick was announced, ns of the monotonic clock.
     pub announced: u64,
     /// When everybody had been woken, ns.

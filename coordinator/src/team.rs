@@ -277,6 +277,7 @@ impl Team {
             self.roster.expect_all();
             seen_at.clear();
             seen_at.extend(self.measuring.measured(tick));
+            let asked = os::now_ns();
             // Empty: robots ask their own source.
             let horizons = match &mut self.policy {
                 Some(policy) => policy.choose(tick, &seen_at, stop)?,
@@ -310,17 +311,8 @@ impl Team {
             *ticks += 1;
             let actions = self.policy.as_ref().map_or(&[][..], PolicySource::actions);
             let measured = &seen_at;
-            let seen = Tick {
-                tick,
-                steps: &finished,
-                measured,
-                actions,
-                stamps: &self.stamps,
-                announced,
-                rung,
-                collected,
-                late,
-            };
+            let (steps, stamps) = (&finished, &self.stamps);
+            let seen = Tick { tick, steps, measured, actions, stamps, asked, announced, rung, collected, late };
             match director.tick(&seen)? {
                 Verdict::Continue => {}
                 Verdict::Over => return Ok(Outcome::Completed),
@@ -339,7 +331,7 @@ impl Team {
             if remaining.is_zero() {
                 return Ok(Wait::Done);
             }
-            self.hub.wait(remaining.min(LOOK_AROUND))?;
+            std::thread::sleep(remaining.min(LOOK_AROUND));
             if let Some(lost) = self.roster.find_ended(Some(tick)) {
                 return Ok(Wait::Lost(lost));
             }
@@ -385,7 +377,7 @@ impl Team {
                 let how = format!("gave no answer for {:.1} s", (now - start).as_secs_f64());
                 return Ok(self.roster.first_missing(tick, how).map_or(Wait::Done, Wait::Lost));
             }
-            self.hub.wait((deadline - now).min(LOOK_AROUND))?;
+            self.hub.wait(self.roster.missing(), (deadline - now).min(LOOK_AROUND));
         }
     }
 

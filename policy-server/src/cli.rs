@@ -2,7 +2,7 @@
 
 use crate::actor::BackEnd;
 use crate::check::{Limits, Prober, probe};
-use crate::commands::{check, contract, control, eval, new, publish};
+use crate::commands::{bench, check, contract, control, eval, new, publish};
 use crate::serve;
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
@@ -37,6 +37,8 @@ enum Command {
     Publish(publish::PublishArgs),
     /// Ask a policy about a list of observations
     Eval(eval::EvalArgs),
+    /// Measure loading and inference with an actor that was never trained
+    Bench(bench::BenchArgs),
     /// Serve a run (the coordinator does that; by hand after a crash)
     Serve(serve::ServeArgs),
     /// What the policy server of a run does
@@ -86,6 +88,7 @@ impl Cli {
             Command::New(args) => new::run(&args),
             Command::Publish(args) => publish::run(&args),
             Command::Eval(args) => eval::run(&args),
+            Command::Bench(args) => bench::run(&args),
             Command::Serve(args) => serve::run(&args).map(|()| ExitCode::SUCCESS),
             Command::Status(args) => control::status(&args),
             Command::Swap(args) => control::swap(&args),

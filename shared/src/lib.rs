@@ -14,6 +14,7 @@ pub mod place;
 pub mod policy;
 pub mod prediction;
 pub mod random;
+pub mod raw;
 pub mod reward;
 pub mod rollout;
 pub mod scenario;

@@ -235,11 +235,8 @@ impl Plan {
     /// The prediction in it; `None` when its horizon is not one (a message is never trusted).
     pub fn prediction(&self) -> Option<Prediction> {
         let horizon = Horizon::new(u64::from(self.horizon)).ok()?;
-        let mut states = [Position::zeros(); MAX_HORIZON + 1];
-        for (to, from) in states.iter_mut().zip(&self.states[..=horizon.steps()]) {
-            *to = Position::from(*from);
-        }
-        Some(Prediction::from_states(&states[..=horizon.steps()], Position::from(self.set_point)))
+        let states = |step: usize| Position::from(self.states[step]);
+        Some(Prediction::from_fn(horizon, states, Position::from(self.set_point)))
     }
 }
 

@@ -46,9 +46,10 @@ pub fn stream(seed: u64, purpose: Use, a: u64, b: u64) -> ChaCha8Rng {
     ChaCha8Rng::from_seed(key)
 }
 
-/// Seed of episode `episode` of a session with `seed`; episode 0 has the session's own.
+/// Seed of episode `episode` of a session with `seed`; episode 0 has the session's own. 63 bits: TOML
+/// knows no larger numbers.
 pub fn episode_seed(seed: u64, episode: u64) -> u64 {
-    if episode == 0 { seed } else { stream(seed, Use::Episode, episode, 0).next_u64() }
+    if episode == 0 { seed } else { stream(seed, Use::Episode, episode, 0).next_u64() >> 1 }
 }
 
 /// A draw from `0..bound`, without bias (rejection).

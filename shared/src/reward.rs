@@ -146,6 +146,7 @@ mod tests {
             status: Status::Solved,
             shielded: false,
             plan: Prediction::from_states(&[position, next_position], Position::zeros()),
+            detect_ns: 0,
             solve_ns: 0,
             step_ns: 0,
         }

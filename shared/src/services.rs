@@ -1,4 +1,4 @@
-//! The only file that knows iceoryx2: names, types and limits of every service, and thin typed ports.
+//! The only place that knows iceoryx2: names, types and limits of every service, and thin typed ports.
 //!
 //! A run has its own prefix (of shared-memory files) and its own short root folder (of sockets, whose
 //! paths must stay below 108 bytes), see [`crate::place`]; two runs can therefore not meet.
@@ -7,22 +7,24 @@
 
 use crate::messages::{Announcement, MAX_ROBOTS, Observation, Plan, PolicyAnswer, Report};
 use crate::place::Place;
-use iceoryx2::port::listener::{Listener, ListenerWaitError};
-use iceoryx2::port::notifier::Notifier;
-use iceoryx2::port::publisher::Publisher;
-use iceoryx2::port::subscriber::Subscriber;
-use iceoryx2::port::update_connections::UpdateConnections;
 use iceoryx2::prelude::*;
-use iceoryx2::sample::Sample;
 use iceoryx2::service::builder::event::EventOpenError;
 use iceoryx2::service::builder::publish_subscribe::PublishSubscribeOpenError as OpenError;
 use iceoryx2::service::port_factory::{event, publish_subscribe};
 use std::fmt::Debug;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+mod events;
 mod policy;
+mod ports;
+mod wake;
 
 pub use policy::{PolicyAsker, PolicyPort};
+pub use ports::{Announcements, Announcer, Receiver, Reporter, Reports, Sender};
+
+use events::{Bell, Ear};
+use wake::{ReportBell, ReportEar, TickBell, TickEar, WakePage};
 
 type Ipc = ipc::Service;
 type Channel<Payload, Header = ()> = publish_subscribe::PortFactory<Ipc, Payload, Header>;
@@ -39,20 +41,22 @@ const OPEN_PATIENCE: Duration = Duration::from_secs(5);
 
 /// Something of the exchange could not be made, opened or used.
 #[derive(Debug, thiserror::Error)]
-#[error(
-    "cannot {what}: iceoryx2 says {reason}; the run's files are under {place}: has the run ended, or is /dev/shm full?"
-)]
+#[error("cannot {what}: {reason}; the run's files are under {place}: has the run ended, or is /dev/shm full?")]
 pub struct ServiceError {
     /// What was attempted.
     pub what: String,
-    /// What iceoryx2 said.
+    /// What iceoryx2 or the system said.
     pub reason: String,
     /// Where this run's files are.
     pub place: String,
 }
 
 fn failed(place: &Place, what: &str, which: &str, reason: impl Debug) -> ServiceError {
-    ServiceError { what: format!("{what} {which}"), reason: format!("{reason:?}"), place: place.to_string() }
+    ServiceError {
+        what: format!("{what} {which}"),
+        reason: format!("iceoryx2 says {reason:?}"),
+        place: place.to_string(),
+    }
 }
 
 // SAFETY of these: `repr(C)`, only numbers and arrays of them, no pointers, no padding (tested).
@@ -121,8 +125,7 @@ pub struct Services {
     announcements: Channel<[Plan], Announcement>,
     reports: Channel<Report>,
     plans: Option<Channel<Plan>>,
-    tick_bell: Alarm,
-    report_bell: Alarm,
+    wake: Arc<WakePage>,
 }
 
 /// Whether services are made or opened.
@@ -149,8 +152,7 @@ impl Services {
             announcements: maker.announcements("vodca/announcements")?,
             reports: maker.channel("vodca/reports", maker.everyone, maker.few)?,
             plans: if peer { Some(maker.channel("vodca/plans", maker.everyone, maker.everyone)?) } else { None },
-            tick_bell: maker.bell("vodca/tick", maker.few, maker.everyone)?,
-            report_bell: maker.bell("vodca/report", maker.everyone, maker.few)?,
+            wake: Arc::new(WakePage::new(place, role)?),
             place: place.clone(),
         })
     }
@@ -160,7 +162,7 @@ impl Services {
         let publisher = self.announcements.publisher_builder().initial_max_slice_len(frame.max(1)).create();
         Ok(Announcer {
             publisher: publisher.map_err(|error| failed(&self.place, "publish on", "vodca/announcements", error))?,
-            bell: Bell::new(&self.tick_bell, &self.place)?,
+            bell: TickBell::new(&self.wake),
             place: self.place.clone(),
         })
     }
@@ -171,25 +173,19 @@ impl Services {
         Ok(Announcements {
             subscriber: subscriber
                 .map_err(|error| failed(&self.place, "subscribe to", "vodca/announcements", error))?,
-            ear: Ear::new(&self.tick_bell, &self.place)?,
+            ear: TickEar::new(&self.wake),
             place: self.place.clone(),
         })
     }
 
     /// A robot's voice to the coordinator.
     pub fn reporter(&self) -> Result<Reporter, ServiceError> {
-        Ok(Reporter {
-            sender: Sender::new(&self.reports, &self.place)?,
-            bell: Bell::new(&self.report_bell, &self.place)?,
-        })
+        Ok(Reporter { sender: Sender::new(&self.reports, &self.place)?, bell: ReportBell::new(&self.wake) })
     }
 
     /// The coordinator's ear.
     pub fn reports(&self) -> Result<Reports, ServiceError> {
-        Ok(Reports {
-            receiver: Receiver::new(&self.reports, &self.place)?,
-            ear: Ear::new(&self.report_bell, &self.place)?,
-        })
+        Ok(Reports { receiver: Receiver::new(&self.reports, &self.place)?, ear: ReportEar::new(&self.wake) })
     }
 
     /// A robot's voice to the others and its ear for them; `None` in a relayed exchange.
@@ -312,175 +308,4 @@ enum Trouble<E> {
 
 fn still_being_made(error: &OpenError) -> bool {
     matches!(error, OpenError::DoesNotExist | OpenError::HangsInCreation)
-}
-
-/// Publishes one type.
-#[derive(Debug)]
-pub struct Sender<Payload: Debug + ZeroCopySend + 'static> {
-    publisher: Publisher<Ipc, Payload, ()>,
-    place: Place,
-}
-
-impl<Payload: Debug + ZeroCopySend + Copy + 'static> Sender<Payload> {
-    fn new(service: &Channel<Payload>, place: &Place) -> Result<Self, ServiceError> {
-        let publisher = service.publisher_builder().create();
-        let publisher = publisher.map_err(|error| failed(place, "publish on", service.name().as_str(), error))?;
-        Ok(Self { publisher, place: place.clone() })
-    }
-
-    /// Connects to every reader there is now; sending does that as well.
-    pub fn connect(&self) -> Result<(), ServiceError> {
-        self.publisher.update_connections().map_err(|error| failed(&self.place, "connect", "to the others", error))
-    }
-
-    /// Hands `payload` to every reader; a reader that has two unread ones loses the older.
-    pub fn send(&self, payload: Payload) -> Result<(), ServiceError> {
-        let sent = self.publisher.loan_uninit().map(|sample| sample.write_payload(payload).send());
-        match sent {
-            Ok(Ok(_)) => Ok(()),
-            Ok(Err(error)) => Err(failed(&self.place, "send", "a payload", error)),
-            Err(error) => Err(failed(&self.place, "loan", "a payload", error)),
-        }
-    }
-}
-
-/// Reads one type.
-#[derive(Debug)]
-pub struct Receiver<Payload: Debug + ZeroCopySend + 'static> {
-    subscriber: Subscriber<Ipc, Payload, ()>,
-    place: Place,
-}
-
-impl<Payload: Debug + ZeroCopySend + Copy + 'static> Receiver<Payload> {
-    fn new(service: &Channel<Payload>, place: &Place) -> Result<Self, ServiceError> {
-        let subscriber = service.subscriber_builder().create();
-        let subscriber = subscriber.map_err(|error| failed(place, "subscribe to", service.name().as_str(), error))?;
-        Ok(Self { subscriber, place: place.clone() })
-    }
-
-    /// The next unread payload, in place; `None`: nothing there.
-    pub fn receive(&self) -> Result<Option<Sample<Ipc, Payload, ()>>, ServiceError> {
-        self.subscriber.receive().map_err(|error| failed(&self.place, "receive", "a payload", error))
-    }
-}
-
-/// Publishes announcements and wakes whoever waits for them.
-#[derive(Debug)]
-pub struct Announcer {
-    publisher: Publisher<Ipc, [Plan], Announcement>,
-    bell: Bell,
-    place: Place,
-}
-
-impl Announcer {
-    /// Publishes `announcement` with `plans`, then wakes every robot.
-    pub fn announce(&self, announcement: &Announcement, plans: &[Plan]) -> Result<(), ServiceError> {
-        // A slice of none is not a payload: there is always one, and `plans` says how many count.
-        let mut sample = (self.publisher.loan_slice_uninit(plans.len().max(1)))
-            .map_err(|error| failed(&self.place, "loan", "an announcement", error))?;
-        *sample.user_header_mut() = *announcement;
-        let sample =
-            if plans.is_empty() { sample.write_from_fn(|_| Plan::EMPTY) } else { sample.write_from_slice(plans) };
-        sample.send().map_err(|error| failed(&self.place, "send", "an announcement", error))?;
-        self.bell.ring()
-    }
-}
-
-/// Receives announcements.
-#[derive(Debug)]
-pub struct Announcements {
-    subscriber: Subscriber<Ipc, [Plan], Announcement>,
-    ear: Ear,
-    place: Place,
-}
-
-impl Announcements {
-    /// The next unread announcement handed to `read` with its plans; `None`: nothing there.
-    pub fn receive<T>(&self, read: impl FnOnce(&Announcement, &[Plan]) -> T) -> Result<Option<T>, ServiceError> {
-        let sample =
-            self.subscriber.receive().map_err(|error| failed(&self.place, "receive", "an announcement", error))?;
-        Ok(sample.map(|sample| {
-            let announcement = sample.user_header();
-            let count = (announcement.plans as usize).min(sample.payload().len());
-            read(announcement, &sample.payload()[..count])
-        }))
-    }
-
-    /// Waits until something may have been announced, a signal came, or `limit` has passed.
-    pub fn wait(&self, limit: Duration) -> Result<(), ServiceError> {
-        self.ear.wait(limit)
-    }
-}
-
-/// Publishes reports and wakes the coordinator.
-#[derive(Debug)]
-pub struct Reporter {
-    sender: Sender<Report>,
-    bell: Bell,
-}
-
-impl Reporter {
-    /// Publishes `report`, then wakes the coordinator.
-    pub fn report(&self, report: Report) -> Result<(), ServiceError> {
-        self.sender.send(report)?;
-        self.bell.ring()
-    }
-}
-
-/// Receives reports.
-#[derive(Debug)]
-pub struct Reports {
-    receiver: Receiver<Report>,
-    ear: Ear,
-}
-
-impl Reports {
-    /// The next unread report, in place; `None`: nothing there.
-    pub fn receive(&self) -> Result<Option<Sample<Ipc, Report, ()>>, ServiceError> {
-        self.receiver.receive()
-    }
-
-    /// Waits until something may have been reported, a signal came, or `limit` has passed.
-    pub fn wait(&self, limit: Duration) -> Result<(), ServiceError> {
-        self.ear.wait(limit)
-    }
-}
-
-#[derive(Debug)]
-struct Bell {
-    notifier: Notifier<Ipc>,
-    place: Place,
-}
-
-impl Bell {
-    fn new(bell: &Alarm, place: &Place) -> Result<Self, ServiceError> {
-        let notifier = bell.notifier_builder().create();
-        let notifier = notifier.map_err(|error| failed(place, "ring", bell.name().as_str(), error))?;
-        Ok(Self { notifier, place: place.clone() })
-    }
-
-    fn ring(&self) -> Result<(), ServiceError> {
-        self.notifier.notify().map(|_| ()).map_err(|error| failed(&self.place, "wake", "the others", error))
-    }
-}
-
-#[derive(Debug)]
-struct Ear {
-    listener: Listener<Ipc>,
-    place: Place,
-}
-
-impl Ear {
-    fn new(bell: &Alarm, place: &Place) -> Result<Self, ServiceError> {
-        let listener = bell.listener_builder().create();
-        let listener = listener.map_err(|error| failed(place, "listen to", bell.name().as_str(), error))?;
-        Ok(Self { listener, place: place.clone() })
-    }
-
-    fn wait(&self, limit: Duration) -> Result<(), ServiceError> {
-        match self.listener.timed_wait(|_| {}, limit) {
-            Ok(_) | Err(ListenerWaitError::InterruptSignal) => Ok(()),
-            Err(error) => Err(failed(&self.place, "wait for", "the others", error)),
-        }
-    }
 }

@@ -1,5 +1,6 @@
 //! The subcommands: each file holds one command's arguments and its work.
 
+pub mod bench;
 pub mod compare;
 pub mod evaluate;
 pub mod figures;

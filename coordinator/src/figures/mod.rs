@@ -4,7 +4,7 @@
 //! (VH): the same controller with variable horizons and no training.
 
 mod film;
-mod svg;
+pub(crate) mod svg;
 
 use film::{Film, Setting};
 use shared::params::Profile;

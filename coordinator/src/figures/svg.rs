@@ -4,10 +4,10 @@
 use std::fmt::Write as _;
 
 /// Okabe and Ito's colours, which the colour-blind tell apart.
-pub(super) const COLOURS: [&str; 8] =
+pub(crate) const COLOURS: [&str; 8] =
     ["#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#8c8c8c", "#b8a500"];
 /// A run that failed.
-pub(super) const FAILED: &str = "#c1121f";
+pub(crate) const FAILED: &str = "#c1121f";
 const STYLE: &str = "svg{background:#fff}text{font:12px sans-serif;fill:#16181d}.t{font-weight:600;font-size:13px}\
 .g{stroke:#e3e6eb}.a{stroke:#8a909c}@media(prefers-color-scheme:dark){svg{background:#14161a}text{fill:#eceef2}.g{stroke:#2c3038}}";
 const WIDTH: f64 = 640.0;
@@ -17,16 +17,16 @@ const TOP: f64 = 30.0;
 const BOTTOM: f64 = 46.0;
 
 /// Title and axis labels, with units.
-pub(super) struct Labels<'a> {
-    pub(super) title: &'a str,
-    pub(super) x: &'a str,
-    pub(super) y: &'a str,
+pub(crate) struct Labels<'a> {
+    pub(crate) title: &'a str,
+    pub(crate) x: &'a str,
+    pub(crate) y: &'a str,
     /// The command that gives the same runs.
-    pub(super) command: &'a str,
+    pub(crate) command: &'a str,
 }
 
 /// A chart under construction.
-pub(super) struct Chart {
+pub(crate) struct Chart {
     body: String,
     x: [f64; 2],
     y: [f64; 2],
@@ -35,15 +35,27 @@ pub(super) struct Chart {
 
 impl Chart {
     /// Axes over `x` and `y`; `equal`: one metre is as long on both.
-    pub(super) fn new(labels: &Labels<'_>, x: [f64; 2], y: [f64; 2], equal: bool) -> Self {
+    pub(crate) fn new(labels: &Labels<'_>, x: [f64; 2], y: [f64; 2], equal: bool) -> Self {
+        let marks = round_values(y).into_iter().map(|value| (value, value.to_string())).collect();
+        Self::marked(labels, x, y, equal, marks)
+    }
+
+    /// Axes over decimal logarithms: `y` from 10^y[0] to 10^y[1].
+    pub(crate) fn logarithmic(labels: &Labels<'_>, x: [f64; 2], y: [f64; 2]) -> Self {
+        let powers = y[0].ceil() as i32..=y[1].floor() as i32;
+        let marks = powers.map(|power| (f64::from(power), 10f64.powi(power).to_string())).collect();
+        Self::marked(labels, x, y, false, marks)
+    }
+
+    fn marked(labels: &Labels<'_>, x: [f64; 2], y: [f64; 2], equal: bool, marks: Vec<(f64, String)>) -> Self {
         let across = WIDTH - LEFT - RIGHT;
         let inner = if equal { across * (y[1] - y[0]) / (x[1] - x[0]) } else { 260.0 };
         let mut chart = Self { body: String::new(), x, y, height: inner + TOP + BOTTOM };
         let (bottom, right) = (chart.height - BOTTOM, WIDTH - RIGHT);
-        for value in round_values(y) {
+        for (value, text) in marks {
             let at = chart.y(value);
             chart.add(format_args!("<path class=\"g\" d=\"M{LEFT} {at:.1}H{right}\"/>"));
-            chart.text(LEFT - 6.0, at + 4.0, "end", &value.to_string());
+            chart.text(LEFT - 6.0, at + 4.0, "end", &text);
         }
         chart.add(format_args!("<path class=\"a\" fill=\"none\" d=\"M{LEFT} {TOP}V{bottom}H{right}\"/>"));
         chart.add(format_args!("<text class=\"t\" x=\"{LEFT}\" y=\"18\">{}</text>", escaped(labels.title)));
@@ -58,9 +70,35 @@ impl Chart {
     }
 
     /// Numbers along the x axis.
-    pub(super) fn number_x(&mut self) {
+    pub(crate) fn number_x(&mut self) {
         for value in round_values(self.x) {
             self.text(self.x(value), self.height - BOTTOM + 16.0, "middle", &value.to_string());
+        }
+    }
+
+    /// These words along the x axis.
+    pub(crate) fn mark_x(&mut self, marks: impl Iterator<Item = (f64, String)>) {
+        for (value, text) in marks {
+            let at = self.x(value);
+            let anchor = if at > WIDTH - RIGHT - 1.0 { "end" } else { "middle" };
+            self.text(at, self.height - BOTTOM + 16.0, anchor, &text);
+        }
+    }
+
+    /// Colours and what they mean, one below the other: in the upper left corner, or the lower right one.
+    pub(crate) fn keys<'a>(&mut self, entries: impl ExactSizeIterator<Item = (&'a str, String)>, lower_right: bool) {
+        let height = 15.0 * entries.len() as f64;
+        let (left, top) = match lower_right {
+            true => (WIDTH - RIGHT - 240.0, self.height - BOTTOM - height),
+            false => (LEFT + 8.0, TOP + 16.0),
+        };
+        for (index, (colour, text)) in entries.enumerate() {
+            let at = top + 15.0 * index as f64;
+            self.add(format_args!(
+                "<rect x=\"{left:.1}\" y=\"{:.1}\" width=\"10\" height=\"10\" fill=\"{colour}\"/>",
+                at - 9.0
+            ));
+            self.text(left + 16.0, at, "start", &text);
         }
     }
 
@@ -82,7 +120,7 @@ impl Chart {
     }
 
     /// A polyline through `points`.
-    pub(super) fn line(&mut self, points: &[[f64; 2]], colour: &str, dash: &str) {
+    pub(crate) fn line(&mut self, points: &[[f64; 2]], colour: &str, dash: &str) {
         let mut path = String::from("M");
         for &[x, y] in points {
             let _ = write!(path, "{:.1} {:.1} ", self.x(x), self.y(y));
@@ -94,7 +132,7 @@ impl Chart {
     }
 
     /// A disc of `radius` on the x axis' scale; `filled` or a ring.
-    pub(super) fn disc(&mut self, [x, y]: [f64; 2], radius: f64, colour: &str, filled: bool) {
+    pub(crate) fn disc(&mut self, [x, y]: [f64; 2], radius: f64, colour: &str, filled: bool) {
         let radius = (self.x(radius) - self.x(0.0)).max(1.0);
         let fill = if filled { colour } else { "none" };
         self.add(format_args!(
@@ -105,12 +143,12 @@ impl Chart {
     }
 
     /// A word at a place of the plot.
-    pub(super) fn word(&mut self, [x, y]: [f64; 2], text: &str) {
+    pub(crate) fn word(&mut self, [x, y]: [f64; 2], text: &str) {
         self.text(self.x(x), self.y(y) + 4.0, "middle", text);
     }
 
     /// Bar `index` of a chart whose x axis counts bars from 0, with its name below it.
-    pub(super) fn bar(&mut self, index: usize, value: f64, colour: &str, name: &str) {
+    pub(crate) fn bar(&mut self, index: usize, value: f64, colour: &str, name: &str) {
         let (left, right) = (self.x(index as f64 - 0.36), self.x(index as f64 + 0.36));
         let (top, bottom) = (self.y(value), self.height - BOTTOM);
         let height = (bottom - top).max(0.0);
@@ -125,7 +163,7 @@ impl Chart {
     }
 
     /// Colours and what they mean, in the top right corner.
-    pub(super) fn legend(&mut self, entries: &[(&str, String)]) {
+    pub(crate) fn legend(&mut self, entries: &[(&str, String)]) {
         let mut right = WIDTH - RIGHT;
         for (colour, text) in entries.iter().rev() {
             let width = 7.0 * text.chars().count() as f64;
@@ -139,7 +177,7 @@ impl Chart {
     }
 
     /// The whole file.
-    pub(super) fn finish(self) -> String {
+    pub(crate) fn finish(self) -> String {
         let height = self.height;
         format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {height:.0}\" role=\"img\">\n\

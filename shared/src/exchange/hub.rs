@@ -46,6 +46,8 @@ impl Hub {
         }
         let plans: &[Plan] = if self.kind == Kind::Relay && tick > 0 { &self.plans } else { &[] };
         announcement.plans = plans.len() as u32;
+        self.reports.look();
+        self.reports.expect(self.plans.len());
         announcement.stamp = os::now_ns();
         self.announcer.announce(&announcement, plans)?;
         Ok(announcement.stamp)
@@ -75,6 +77,7 @@ impl Hub {
 
     /// Hands every unread report of this run to `take`; does not wait.
     pub fn collect(&mut self, mut take: impl FnMut(usize, &Report)) -> Result<(), ServiceError> {
+        self.reports.look();
         while let Some(report) = self.reports.receive()? {
             let robot = report.plan.robot as usize;
             if report.plan.epoch != self.epoch || robot >= self.plans.len() {
@@ -88,8 +91,9 @@ impl Hub {
         Ok(())
     }
 
-    /// Waits until something may have been reported, a signal came, or `limit` has passed.
-    pub fn wait(&self, limit: Duration) -> Result<(), ServiceError> {
-        self.reports.wait(limit)
+    /// Waits until `reports` more have come since the last [`Self::collect`], a signal came, or `limit` has
+    /// passed.
+    pub fn wait(&self, reports: usize, limit: Duration) {
+        self.reports.wait(reports, limit);
     }
 }

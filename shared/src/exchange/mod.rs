@@ -149,7 +149,7 @@ impl Clock {
                 Some(None) => {} // an old one
                 None if waited => return Ok(None),
                 None => {
-                    self.announcements.wait(limit)?;
+                    self.announcements.wait(limit);
                     waited = true;
                 }
             }

@@ -98,7 +98,7 @@ fn main() -> ExitCode {
             set_point: setup.scenario.robots[robot].set_point,
             sample_time: setup.params.model.sample_time,
             max_speed: setup.params.model.max_speed,
-            fault,
+            fault: fault.clone(),
         })
         .map_err(|error| error.to_string())
     });

@@ -2,6 +2,7 @@
 //! server, the heaviest build of the project.
 #![allow(clippy::unwrap_used)] // a panic is how a test fails
 
+mod bench;
 mod killed;
 mod swap;
 

@@ -14,6 +14,17 @@ fn teams_from_one_to_a_hundred_robots_drive() {
 }
 
 #[test]
+fn two_hundred_robots_start_and_keep_to_the_clock() {
+    let finished = Run::start(Robots::Real, "200 --max-ticks 5 --real-time").finish();
+    assert_eq!(finished.status.code(), Some(1), "{finished:?}");
+    assert_eq!(finished.trajectory.lines().count(), 1 + 6 * 200);
+    let summary = &finished.summary;
+    assert_eq!((summary["ticks"].as_u64(), summary["end"].as_str()), (Some(5), Some("out_of_ticks")));
+    assert_eq!(summary["lateness"]["count"], 5, "{summary}");
+    assert_eq!(summary["tick_parts"]["wake"]["count"], 5 * 200, "{summary}");
+}
+
+#[test]
 fn a_robot_that_does_not_exist_is_refused() {
     let mut run = Run::start(Robots::Real, &format!("2 {ENDLESS}"));
     run.wait_until_driving();

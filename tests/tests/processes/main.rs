@@ -1,6 +1,8 @@
 //! Whole runs, one file per promise.
 
+mod bench;
 mod by_hand;
+mod check_solver;
 mod crash;
 mod golden;
 mod hang;
