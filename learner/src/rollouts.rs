@@ -58,9 +58,9 @@ pub fn survey(folders: &[PathBuf]) -> Result<Survey, RolloutsError> {
         fits(path, &shard, survey.about.robots)?;
         survey.rows += shard.rows() as u64;
         for position in shard.iter().flat_map(|row| row.observation.as_chunks::<2>().0) {
-            for axis in 0..2 {
-                survey.bounds[0][axis] = survey.bounds[0][axis].min(f64::from(position[axis]));
-                survey.bounds[1][axis] = survey.bounds[1][axis].max(f64::from(position[axis]));
+            for (axis, metres) in position.iter().map(|metres| f64::from(*metres)).enumerate() {
+                survey.bounds[0][axis] = survey.bounds[0][axis].min(metres);
+                survey.bounds[1][axis] = survey.bounds[1][axis].max(metres);
             }
         }
     }
