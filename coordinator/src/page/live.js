@@ -17,6 +17,7 @@ function cards(frame) {
     ["fallbacks", frame.fallbacks],
     ["horizons", horizons],
   ];
+  if (frame.policy !== null) entries.push(["policy", frame.policy]);
   find("cards").replaceChildren(...entries.map(([name, value]) => {
     const card = document.createElement("div"), term = document.createElement("dt"), text = document.createElement("dd");
     card.className = "card";
