@@ -62,14 +62,12 @@ fn told(status: &Status, alive: bool) -> String {
         let since = serving.since_tick.map_or("not asked yet".into(), |tick| format!("since tick {tick}"));
         format!("{} ({name}sha256 {}), {since}", serving.version, serving.sha256.get(..12).unwrap_or_default())
     };
-    let none = || "nothing".to_string();
     let server = if alive { "serves" } else { "has ended; the policy is what it served last" };
     let mut text = format!("server      process {} {server}\n", status.pid);
-    text += &format!("policy      {}\n", status.serving.as_ref().map_or_else(none, named));
-    text += &format!(
-        "before it   {} (`policy rollback` goes back to it)\n",
-        status.previous.as_ref().map_or_else(none, named)
-    );
+    text += &format!("policy      {}\n", status.serving.as_ref().map_or("nothing".into(), named));
+    if let Some(previous) = &status.previous {
+        text += &format!("before it   {} (`policy rollback` goes back to it)\n", named(previous));
+    }
     for rejected in &status.rejected {
         text += &format!("refused     {}: {}\n", rejected.version, rejected.error);
     }
