@@ -21,8 +21,9 @@ build() { # build PACKAGE...: silent when there is little to do
     packages=
     for package; do packages="$packages -p $package"; done
     # shellcheck disable=SC2086 # words on purpose
-    cargo_release build $quiet --bins $packages >&2
+    cargo_release build $quiet --bins $packages $features >&2
 }
+features=
 
 case ${1-} in
 test) shift; cargo_release test --workspace "$@"; exit ;;
@@ -30,9 +31,14 @@ test) shift; cargo_release test --workspace "$@"; exit ;;
 esac
 # Only commands with a policy need its server: the embedded back-end is the heaviest build of all.
 # By itself, so that its dependencies have the same features (and are built once) in every command.
+server=
 case " $* " in
 *" --policy "* | *" --policy="* | *policy:*) server=policy-server ;;
-*) server= ;;
+" figures "*) for name in two_setpoint four_gate ex14_d; do [ ! -d "policies/$name" ] || server=policy-server; done ;;
+esac
+case " $* " in
+*" --foxglove "* | *" --foxglove="*) foxglove=coordinator/foxglove ;;
+*) foxglove= ;;
 esac
 case " $* " in
 *" solver "* | *" step "* | *" exchange "* | *" hop "* | *" scale "* | *" --help "*) ;;
@@ -42,6 +48,7 @@ case ${1-} in
 policy) build policy-server; shift; exec "$target/release/policy-server" "$@" ;;
 *) [ -z "$server" ] || build "$server" ;;
 esac
+features=${foxglove:+--features $foxglove}
 case ${1-} in
 run | bench | rollout) build coordinator agent ;;
 learn) build learner; exec "$target/release/learner" "$@" ;;

@@ -2,7 +2,7 @@
 
 use crate::clock::Overruns;
 use crate::launch::{self, Agents, LaunchError};
-use crate::policy::{PolicyError, PolicyOptions, PolicySummary};
+use crate::policy::{Acting, PolicyError, PolicyOptions, PolicySummary};
 use crate::record::RecordError;
 use crate::roster::PeerLost;
 use crate::stdout::PrintError;
@@ -187,6 +187,8 @@ pub struct Tick<'a> {
     pub collected: u64,
     /// How late it was announced (real time only), ns.
     pub late: u64,
+    /// Who chose the horizons, in a run with a policy.
+    pub acting: Option<Acting>,
 }
 
 /// How a run went.

@@ -312,7 +312,8 @@ impl Team {
             let actions = self.policy.as_ref().map_or(&[][..], PolicySource::actions);
             let measured = &seen_at;
             let (steps, stamps) = (&finished, &self.stamps);
-            let seen = Tick { tick, steps, measured, actions, stamps, asked, announced, rung, collected, late };
+            let acting = self.policy.as_ref().and_then(PolicySource::acting);
+            let seen = Tick { tick, steps, measured, actions, stamps, asked, announced, rung, collected, late, acting };
             match director.tick(&seen)? {
                 Verdict::Continue => {}
                 Verdict::Over => return Ok(Outcome::Completed),

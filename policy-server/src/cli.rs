@@ -10,7 +10,7 @@ use std::process::ExitCode;
 
 /// Policies: check, publish and try ONNX actors, and swap them while the robots drive.
 #[derive(Debug, Parser)]
-#[command(name = "policy", version, arg_required_else_help = true, max_term_width = 100, after_help = EXAMPLES)]
+#[command(name = "policy", bin_name = "./run.sh policy", version, arg_required_else_help = true, max_term_width = 100, after_help = EXAMPLES)]
 pub struct Cli {
     #[command(subcommand)]
     command: Command,

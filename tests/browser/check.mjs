@@ -81,7 +81,7 @@ async function compare(page) {
   await page.until("document.querySelectorAll('#families svg').length > 0");
   const families = await count(page, "#families section");
   assert.equal(await count(page, "#families svg"), 4 * families);
-  const rows = await page.eval("comparison.rows.length + comparison.totals.length");
+  const rows = await page.eval("comparison.rows.length + totals.length");
   assert.equal(await count(page, "#figures tbody tr"), rows);
   const failing = await page.eval("comparison.rows.filter(row => row.successes < row.runs).length");
   assert.equal(await count(page, "#families figure:first-of-type rect.failed"), failing, "failures are red");

@@ -12,7 +12,8 @@ use std::path::PathBuf;
 Example:
   ./run.sh figures
 Runs the paper's tasks in this process (two, four and fourteen robots) and writes one SVG per figure. Each file names
-the command that repeats its run in its description.")]
+the command that repeats its run in its description. Variable horizons are those of policies/two_setpoint,
+policies/four_gate and policies/ex14_d where these folders are there, otherwise the best of twenty random runs.")]
 pub struct Args {
     /// Folder of the figures; what is there is written over
     #[arg(long, value_name = "DIR", default_value = "figures")]

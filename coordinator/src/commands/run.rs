@@ -85,6 +85,9 @@ pub struct Args {
     /// the largest difference of an input
     #[arg(long)]
     check_solver: bool,
+    /// Serve the scene to Foxglove or Lichtblick on this machine (ws://127.0.0.1:PORT) while the team drives
+    #[arg(long, value_name = "PORT", num_args = 0..=1, default_missing_value = "8765")]
+    foxglove: Option<u16>,
     /// Print the robots' commands and wait for them to be started by hand
     #[arg(long)]
     by_hand: bool,
@@ -120,7 +123,8 @@ pub fn run(args: Args) -> Ending {
         options.policy = Some(args.use_policy.options(policy, &scenario)?);
         options.horizons = shared::team::POLICY.into();
     }
-    let wanted = Wanted { terminal: args.tui, browser: args.live, horizons: options.horizons.clone() };
+    let wanted =
+        Wanted { terminal: args.tui, browser: args.live, foxglove: args.foxglove, horizons: source_of_horizons(&args) };
     let views = Views::open(wanted, &scenario, &params).map_err(Failure::usage)?;
     let mut session = Session::start(folder, &scenario, &params, about(&args, &scenario, options.exchange))
         .map_err(Failure::broken)?;
@@ -130,7 +134,10 @@ pub fn run(args: Args) -> Ending {
     let folder = session.path().to_owned();
     let ending = play(session, views, &scenario, &params, options, &stop);
     let ending = if args.check_solver { check_solver(&folder, ending) } else { ending };
-    point_to_page(&folder, args.report)?;
+    // A team that did not start has left nothing to see.
+    if !matches!(ending, Err(Failure::Broken(_))) {
+        point_to_page(&folder, args.report)?;
+    }
     ending
 }
 
@@ -151,16 +158,21 @@ fn options(args: &Args, scenario: &Scenario, folder: &RunFolder) -> Result<Optio
     Ok(options)
 }
 
+/// As records and views name it.
+fn source_of_horizons(args: &Args) -> String {
+    match &args.policy {
+        Some(policy) => format!("policy:{}", policy.display()),
+        None => args.horizon.to_string(),
+    }
+}
+
 fn about(args: &Args, scenario: &Scenario, exchange: Kind) -> About {
     About {
         version: 1,
         scenario: scenario.name.clone(),
         robots: scenario.robots.len(),
         profile: args.profile.to_string(),
-        horizon: match &args.policy {
-            Some(policy) => format!("policy:{}", policy.display()),
-            None => args.horizon.to_string(),
-        },
+        horizon: source_of_horizons(args),
         seed: scenario.seed,
         exchange: match exchange {
             Kind::Peer => "peer".into(),
@@ -200,7 +212,7 @@ fn play(
     let mut observer = |tick: &Tick<'_>| {
         let duration = Duration::from_nanos(tick.collected.saturating_sub(tick.announced));
         let observed = session.tick(tick.tick, tick.steps, &TickTimes::from(tick));
-        views.tick(tick.tick, tick.steps, duration, session.metrics());
+        views.tick(tick, duration, session.metrics());
         Ok(if observed? { Verdict::Over } else { Verdict::Continue })
     };
     let ended = team.run(stop, &mut observer);

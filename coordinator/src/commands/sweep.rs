@@ -9,6 +9,7 @@ use crate::solver_check::SolverCheck;
 use crate::stdout;
 use crate::text_table::TextTable;
 use crate::{parallel, record};
+use shared::horizon::{Horizon, HorizonError};
 use shared::horizon_source::{HorizonSource, HorizonSourceError, HorizonSpec};
 use shared::metrics::RunSummary;
 use shared::params::{Params, Profile};
@@ -61,7 +62,18 @@ enum HorizonsError {
     /// Of the numbers.
     #[error(transparent)]
     Numbers(#[from] NumbersError),
-    /// Of one of the horizons.
+    /// A horizon out of range.
+    #[error(
+        "--horizons {list}: {source}; write fixed horizons as 1..49 or 5,10,20 (both ends included), or seeds of random \
+         ones as random:0..19"
+    )]
+    Range {
+        /// As given.
+        list: String,
+        /// Which one, and what is allowed.
+        source: HorizonError,
+    },
+    /// Another source.
     #[error(transparent)]
     Source(#[from] HorizonSourceError),
 }
@@ -74,8 +86,12 @@ impl FromStr for Horizons {
         match kind {
             "fixed" | "random" => {
                 let Numbers(numbers) = list.parse()?;
-                let spec = |number: &u64| format!("{kind}:{number}").parse::<HorizonSpec>();
-                Ok(Self(numbers.iter().map(spec).collect::<Result<_, _>>()?))
+                let spec = |&number: &u64| match kind {
+                    "random" => Ok(HorizonSpec::Random(Some(number))),
+                    _ => Horizon::new(number).map(|horizon| HorizonSpec::Fixed(vec![horizon])),
+                };
+                let all: Result<_, _> = numbers.iter().map(spec).collect();
+                Ok(Self(all.map_err(|source| HorizonsError::Range { list: list.into(), source })?))
             }
             _ => Ok(Self(vec![text.parse()?])),
         }
@@ -187,7 +203,8 @@ mod tests {
         };
         assert_eq!(specs("5,10").unwrap(), ["fixed:5", "fixed:10"]);
         assert_eq!(specs("random:0..2").unwrap(), ["random:0", "random:1", "random:2"]);
-        assert!(specs("0..3").unwrap_err().to_string().contains("1..=49"));
+        let message = specs("0..3").unwrap_err().to_string();
+        assert!(message.starts_with("--horizons 0..3: horizon 0 is outside 1..=49; write fixed"), "{message}");
         for text in ["twenty", "5,x", "random:5,x"] {
             let message = specs(text).unwrap_err().to_string();
             assert!(message.contains("1..49") && !message.contains("script"), "one list of forms: {message}");

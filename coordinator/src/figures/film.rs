@@ -1,12 +1,19 @@
 //! Runs whose every tick is kept, for figures.
 
-use crate::in_process::run_whole;
+use crate::in_process::{run_whole, run_with_policy};
+use crate::policy::client::{ClientError, PolicyClient};
+use crate::policy::found::FoundPolicy;
 use shared::horizon_source::HorizonSource;
 use shared::metrics::RunSummary;
 use shared::params::{Params, Profile};
-use shared::scenario::{Scenario, set_up};
+use shared::scenario::{Scenario, SetupError, set_up};
 use shared::step::Step;
+use shared::stop::StopFlag;
 use std::error::Error;
+use std::path::Path;
+
+/// Where policies lie that were trained for the figures, one folder per scenario.
+const POLICIES: &str = "policies";
 
 /// What a figure runs.
 #[derive(Clone, Copy, Debug)]
@@ -28,13 +35,34 @@ pub(super) struct Film {
 impl Setting {
     /// Runs it with `horizon`, a SPEC of `--horizon`.
     pub(super) fn run(&self, horizon: &str) -> Result<Film, Box<dyn Error + Send + Sync>> {
-        let sets: Vec<String> = self.set.into_iter().map(String::from).collect();
-        let (scenario, params) = set_up(Some(self.scenario), None, self.profile, &sets)?;
+        let (scenario, params) = self.set_up()?;
         let source =
             HorizonSource::new(&horizon.parse()?, scenario.robots.len(), scenario.seed, params.horizon.jitter)?;
         let mut ticks = Vec::new();
         let summary = run_whole(&scenario, &params, &source, |steps| ticks.push(steps.to_vec()));
         Ok(Film { horizon: horizon.into(), scenario, params, ticks, summary })
+    }
+
+    /// The run with variable horizons: those of the policy in `policies/SCENARIO` where there is one, otherwise
+    /// [`Setting::best_random`].
+    pub(super) fn variable(&self, seeds: u64) -> Result<Film, Box<dyn Error + Send + Sync>> {
+        let folder = format!("{POLICIES}/{}", self.scenario);
+        if !Path::new(&folder).is_dir() {
+            return self.best_random(seeds);
+        }
+        let (scenario, params) = self.set_up()?;
+        let mut client = PolicyClient::start(&FoundPolicy::find(&folder)?, &scenario, &params, &StopFlag::default())?;
+        let mut ticks = Vec::new();
+        let metrics = run_with_policy(&scenario, &params, &mut client, |_, steps| {
+            ticks.push(steps.to_vec());
+            Ok::<(), ClientError>(())
+        })?;
+        Ok(Film { horizon: format!("policy:{}", self.scenario), scenario, params, ticks, summary: metrics.finish() })
+    }
+
+    fn set_up(&self) -> Result<(Scenario, Params), SetupError> {
+        let sets: Vec<String> = self.set.into_iter().map(String::from).collect();
+        set_up(Some(self.scenario), None, self.profile, &sets)
     }
 
     /// The shortest successful run of `seeds` with random horizons; the first one when none succeeds.
@@ -54,7 +82,11 @@ impl Setting {
     pub(super) fn command(&self, horizon: &str) -> String {
         let Self { scenario, profile, .. } = self;
         let set = self.set.map_or(String::new(), |set| format!(" --set {set}"));
-        format!("./run.sh run --scenario {scenario} --profile {profile} --horizon {horizon}{set}")
+        let horizons = match horizon.strip_prefix("policy:") {
+            Some(name) => format!("--policy {POLICIES}/{name}"),
+            None => format!("--horizon {horizon}"),
+        };
+        format!("./run.sh run --scenario {scenario} --profile {profile} {horizons}{set}")
     }
 }
 

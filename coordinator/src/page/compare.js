@@ -80,7 +80,9 @@ const COLUMNS = [
 ];
 const table = find("figures"), head = table.createTHead().insertRow(), body = table.createTBody();
 COLUMNS.forEach(([name]) => head.append(make("th", "", name)));
-for (const row of [...comparison.rows, ...comparison.totals]) {
+// One family is its own total.
+const totals = comparison.rows.length > comparison.totals.length ? comparison.totals : [];
+for (const row of [...comparison.rows, ...totals]) {
   const line = body.insertRow();
   COLUMNS.forEach(([, text]) => { line.insertCell().textContent = text(row); });
 }

@@ -17,9 +17,10 @@ function cards(frame) {
     ["fallbacks", frame.fallbacks],
     ["horizons", horizons],
   ];
-  find("cards").replaceChildren(...entries.map(([name, value]) => {
+  if (frame.policy !== null) entries.push(["policy", frame.policy, "wide"]);
+  find("cards").replaceChildren(...entries.map(([name, value, wide]) => {
     const card = document.createElement("div"), term = document.createElement("dt"), text = document.createElement("dd");
-    card.className = "card";
+    card.className = wide ? "card wide" : "card";
     term.textContent = name;
     text.textContent = value;
     card.append(term, text);

@@ -3,7 +3,7 @@
 //! The files beside this one are what a browser sees: `*.html` are frames in which `{{NAME}}` stands for
 //! a part, `*.js` are plain scripts that share one page, `style.css` holds both colour schemes.
 
-mod base64;
+pub(crate) mod base64;
 pub mod recorded;
 mod rows;
 pub mod run_data;

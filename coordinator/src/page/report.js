@@ -30,7 +30,29 @@ function cardsOf(run) {
     ["fallbacks", s.statuses.shifted + s.statuses.stopped],
     ["tick p50 / p99", `${(s.tick_latency.p50_us / 1e3).toFixed(2)} / ${(s.tick_latency.p99_us / 1e3).toFixed(2)} ms`],
     ["guarantee", s.guarantee, "", "wide"],
+    ...policyCards(s.policy),
   ];
+}
+
+function policyCards(policy) {
+  if (!policy) return [];
+  const shown = 6, more = policy.versions.length - shown;
+  const versions = policy.versions.slice(0, shown).map(({ version, sha256, from_tick, to_tick }) =>
+    `${version} (sha256 ${sha256.slice(0, 12)}), ticks ${from_tick} to ${to_tick}`);
+  if (more > 0) versions.push(`${more} more in policy.csv`);
+  const us = value => `${value.toFixed(0)} µs`;
+  const cards = [
+    ["policy", `${policy.source}: ${versions.join("; ")}`, "", "wide"],
+    ["policy answers", `${policy.answered} in time, ${policy.late} late (horizons held ${policy.held} ticks, default `
+      + `${policy.default_used}); inference p50 ${us(policy.inference.p50_us)}, p99 ${us(policy.inference.p99_us)}`, "", "wide"],
+  ];
+  const shadow = policy.shadow;
+  if (shadow) {
+    cards.push(["shadow", `${shadow.source}: differs in ${(100 * shadow.differing / Math.max(shadow.compared, 1)).toFixed(1)} % `
+      + `of ${shadow.compared} horizons, by ${shadow.mean_distance.toFixed(2)} steps on average, at most ${shadow.max_distance}`,
+      "", "wide"]);
+  }
+  return cards;
 }
 
 for (const run of runs) {

@@ -165,5 +165,6 @@ pub fn live_frame(frame: &Frame, params: &Params, layout: &Layout) -> Value {
     json!({
         "tick": frame.tick, "tickMs": frame.duration.as_secs_f64() * 1e3, "arrived": frame.arrived,
         "minSeparation": separation, "fallbacks": frame.fallbacks, "robots": robots,
+        "policy": frame.acting.map(|acting| acting.to_string()),
     })
 }

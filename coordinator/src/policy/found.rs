@@ -2,27 +2,15 @@
 
 use shared::policy::MAX_MODEL_BYTES;
 use shared::policy::contract;
-use shared::policy::folder::{FolderError, MANIFEST_FILE, MODEL_FILE, resolve};
+use shared::policy::folder::{self, FolderError, MANIFEST_FILE, MODEL_FILE, resolve};
 use shared::policy::onnx::Model;
 use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
-/// Where policies lie that are called by their names alone.
-const POLICIES: &str = "policies";
-
 /// Why a policy cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub enum FindError {
-    /// Nothing has that name.
-    #[error(
-        "there is no policy {name}: neither {name} nor {POLICIES}/{name} is there; name an ONNX file or a policies folder \
-         (`./run.sh policy new --random --robots N {POLICIES}/try` writes one to try things with)"
-    )]
-    NotThere {
-        /// As given.
-        name: String,
-    },
     /// The system has no absolute path for it, or refuses to open it.
     #[error("cannot use the policy {}: {source}", path.display())]
     Refused {
@@ -31,7 +19,7 @@ pub enum FindError {
         /// What the system said.
         source: io::Error,
     },
-    /// A folder without a policy.
+    /// Nothing has that name, or a folder holds no policy.
     #[error(transparent)]
     Folder(#[from] FolderError),
     /// A file that is no model.
@@ -55,10 +43,9 @@ pub struct FoundPolicy {
     pub robots: usize,
 }
 
-/// The absolute path that `name` means: itself, or the folder of that name in `policies/`.
+/// The absolute path of the file or folder that `name` means.
 pub fn locate(name: &Path) -> Result<PathBuf, FindError> {
-    let here = [name.to_owned(), Path::new(POLICIES).join(name)].into_iter().find(|path| path.exists());
-    let path = here.ok_or_else(|| FindError::NotThere { name: name.display().to_string() })?;
+    let path = folder::locate(name)?;
     std::path::absolute(&path).map_err(|source| FindError::Refused { path, source })
 }
 

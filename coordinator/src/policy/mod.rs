@@ -26,6 +26,7 @@ use shared::policy::settings::{PolicySettings, SettingsError};
 use shared::services::{PolicyAsker, ServiceError};
 use shared::stop::StopFlag;
 use shared::team::FIRST_EPOCH;
+use std::fmt;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -92,6 +93,27 @@ pub enum Source {
     Default,
 }
 
+/// Who chose the horizons of a tick.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Acting {
+    /// Whether it was the policy.
+    pub source: Source,
+    /// Its version in the run's folder; 0 unless it was the policy.
+    pub version: u32,
+    /// SHA-256 of its file; zeros unless it was the policy.
+    pub sha256: [u8; 32],
+}
+
+impl fmt::Display for Acting {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.source {
+            Source::Policy => write!(f, "v{:06} (sha256 {})", self.version, record::digits(&self.sha256[..6])),
+            Source::Held => f.write_str("no answer, horizons held"),
+            Source::Default => f.write_str("no answer, default horizon"),
+        }
+    }
+}
+
 /// The policy server of a run, as the coordinator sees it.
 pub struct PolicySource {
     // Dropped in this order: the process before the ports.
@@ -110,6 +132,7 @@ pub struct PolicySource {
     horizons: Vec<Option<Horizon>>,
     /// Of the newest tick; empty when the policy did not choose its horizons.
     actions: Vec<f32>,
+    acting: Option<Acting>,
 }
 
 impl PolicySource {
@@ -132,6 +155,7 @@ impl PolicySource {
             tally: Tally::new(options.settings.policy.clone(), options.settings.shadow.clone()),
             horizons: vec![None; robots],
             actions: Vec::with_capacity(robots),
+            acting: None,
             options,
         })
     }
@@ -180,6 +204,12 @@ impl PolicySource {
         }
         let source = self.bridge.take(horizons);
         self.tally.tick(tick, source, answer.as_ref());
+        let acted = answer.as_ref().filter(|_| source == Source::Policy);
+        self.acting = Some(Acting {
+            source,
+            version: acted.map_or(0, |answer| answer.version),
+            sha256: acted.map_or([0; 32], |answer| answer.sha256),
+        });
         if let Some(record) = &mut self.record {
             record.tick(tick, source, answer.as_ref())?;
         }
@@ -240,6 +270,11 @@ impl PolicySource {
         question
     }
 
+    /// Who chose the horizons of the newest tick; `None` before the first.
+    pub fn acting(&self) -> Option<Acting> {
+        self.acting
+    }
+
     /// The answer for `tick`; `None`: it did not come in time.
     fn await_answer(&mut self, tick: u64, stop: &StopFlag) -> Result<Option<PolicyAnswer>, PolicyError> {
         let deadline = Instant::now() + self.options.wait;
@@ -263,7 +298,13 @@ impl PolicySource {
             let dead = !self.successor && self.process.has_ended();
             if !self.present || left.is_zero() || stop.is_set() || dead {
                 if self.present && !stop.is_set() {
-                    tracing::warn!("the policy server gave no answer for tick {tick}; robots keep their horizons");
+                    let again = match dead {
+                        true => "; it has ended, `./run.sh policy serve --run RUN` starts another",
+                        false => "",
+                    };
+                    tracing::warn!(
+                        "the policy server gave no answer for tick {tick}; robots keep their horizons{again}"
+                    );
                     self.present = false;
                 }
                 return Ok(None);
@@ -294,5 +335,18 @@ impl PolicySource {
             record.finish()?;
         }
         Ok(self.tally.summary())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn who_acts_is_told_in_a_few_words() {
+        let acting = |source| Acting { source, version: 17, sha256: [0xab; 32] };
+        assert_eq!(acting(Source::Policy).to_string(), "v000017 (sha256 abababababab)");
+        assert_eq!(acting(Source::Held).to_string(), "no answer, horizons held");
+        assert_eq!(acting(Source::Default).to_string(), "no answer, default horizon");
     }
 }

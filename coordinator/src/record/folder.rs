@@ -1,9 +1,11 @@
 //! The folder of a run: where it lies, and files that are either whole or absent.
 
-use std::fs::{self, File};
+use std::fs::{self, File, TryLockError};
 use std::io::{self, Write};
+use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
-use std::time::{SystemTime, UNIX_EPOCH};
+use std::thread;
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 /// Why a run could not be recorded. What was written before stays readable.
 #[derive(Debug, thiserror::Error)]
@@ -66,9 +68,12 @@ pub enum RecordError {
 #[derive(Debug)]
 pub struct RunFolder {
     path: PathBuf,
+    /// Locked as long as it is open.
+    _claim: File,
 }
 
-/// Says that a run is writing to the folder. Of two runs that are given one folder one can make it.
+/// Says that a run is writing to the folder: of two runs that are given one folder one can lock it. The lock
+/// of a run that was killed ends with it; the file is swept by the next run.
 const CLAIM: &str = ".claimed";
 
 impl Drop for RunFolder {
@@ -112,12 +117,8 @@ impl RunFolder {
             return Err(not_empty(entry));
         }
         // This also finds out now, rather than after the team has started, whether anything can be written.
-        match File::create_new(path.join(CLAIM)) {
-            Ok(_) => {}
-            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => return Err(not_empty(CLAIM.into())),
-            Err(source) => return Err(refused(source)),
-        }
-        let folder = Self { path: path.to_owned() };
+        let Some(claim) = claim(&path.join(CLAIM)).map_err(refused)? else { return Err(not_empty(CLAIM.into())) };
+        let folder = Self { path: path.to_owned(), _claim: claim };
         // Another run may have come and gone between the look and the claim.
         match first_entry()? {
             Some(entry) => Err(not_empty(entry)),
@@ -128,6 +129,7 @@ impl RunFolder {
     /// `parent/name`, or `parent/name-2` and so on when another run took that name in the same second.
     fn fresh(parent: &Path, name: &str) -> Result<Self, RecordError> {
         fs::create_dir_all(parent).map_err(|source| RecordError::Folder { path: parent.to_owned(), source })?;
+        sweep_claims(parent);
         for attempt in 1.. {
             let path = parent.join(if attempt == 1 { name.to_owned() } else { format!("{name}-{attempt}") });
             match fs::create_dir(&path) {
@@ -160,6 +162,35 @@ impl RunFolder {
             let _ = fs::remove_file(&beside); // best effort: the error that is reported matters more
             RecordError::Write { path, source }
         })
+    }
+}
+
+/// Makes and locks the file; `None`: somebody else has it.
+fn claim(path: &Path) -> io::Result<Option<File>> {
+    // A sweep holds the lock of a claim for an instant, too.
+    for _ in 0..20 {
+        let file = File::options().write(true).create(true).truncate(false).open(path)?;
+        match file.try_lock() {
+            // It may have been deleted between the two calls: then another file has its name, or none.
+            Ok(()) if fs::metadata(path).is_ok_and(|named| Some(named.ino()) == inode(&file)) => return Ok(Some(file)),
+            Ok(()) => {}
+            Err(TryLockError::WouldBlock) => thread::sleep(Duration::from_millis(5)),
+            Err(TryLockError::Error(error)) => return Err(error),
+        }
+    }
+    Ok(None)
+}
+
+fn inode(file: &File) -> Option<u64> {
+    file.metadata().ok().map(|about| about.ino())
+}
+
+/// Deletes the claims of runs in `parent` that were killed.
+fn sweep_claims(parent: &Path) {
+    for entry in fs::read_dir(parent).into_iter().flatten().flatten() {
+        let path = entry.path().join(CLAIM);
+        // Best effort: a claim that stays does no harm.
+        let _ = File::open(&path).is_ok_and(|file| file.try_lock().is_ok() && fs::remove_file(&path).is_ok());
     }
 }
 
@@ -305,6 +336,23 @@ mod tests {
         assert_eq!(fs::read(folder.file("a.txt")).unwrap(), b"two");
         drop(folder);
         assert_eq!(fs::read_dir(place.path().join("new/run")).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn the_claim_of_a_run_that_was_killed_is_swept_and_that_of_a_living_one_is_not() {
+        let place = tempfile::tempdir().unwrap();
+        let living = RunFolder::fresh(place.path(), "living").unwrap();
+        let killed = place.path().join("killed");
+        fs::create_dir(&killed).unwrap();
+        fs::write(killed.join(CLAIM), "").unwrap(); // nobody holds its lock
+        // Nothing else is in it: a run may have the folder.
+        assert!(RunFolder::at(&killed).is_ok());
+        fs::write(killed.join(CLAIM), "").unwrap();
+        let next = RunFolder::fresh(place.path(), "next").unwrap();
+        assert!(!killed.join(CLAIM).exists());
+        assert!(living.file(CLAIM).exists() && next.file(CLAIM).exists());
+        let message = RunFolder::at(living.path()).unwrap_err().to_string();
+        assert!(message.contains("already holds \".claimed\""), "{message}");
     }
 
     #[test]

@@ -1,27 +1,13 @@
 //! `run.mcap`: the run as a film for Foxglove, Lichtblick and Rerun. The only file that imports `mcap`.
 //!
-//! | topic | schema | when |
-//! |---|---|---|
-//! | `/layout` | `foxglove.SceneUpdate` | once: obstacles and set-points |
-//! | `/scene` | `foxglove.SceneUpdate` | every tick: discs with their number, predicted paths |
-//! | `/poses` | `foxglove.PosesInFrame` | every tick: positions (Rerun shows these, it has no SceneUpdate) |
-//! | `/team` | `vodca.Team`, JSON | every tick: the values of `trajectory.csv` and more, for plots |
-//!
-//! Why not the `foxglove` crate: it would add some ninety crates and a minute of build time for three
-//! message types. The published descriptors lie beside this file and go into every log, the messages
-//! are written by `scene.rs`; Foxglove's own Python decoder reads them back.
-//!
-//! Log time is `tick * sample_time` from 0 and nothing measured goes in, so two equal runs give equal bytes.
+//! Its messages are those of `film.rs`. Log time is `tick * sample_time` from 0 and nothing measured goes in, so two equal runs give equal bytes.
 //! Chunks are written whole every 25 ticks (5 s): a log cut at any byte reads in stream order
 //! up to its last whole chunk.
 
 use super::folder::RecordError;
-use super::protobuf::Message;
-use super::scene;
-use super::trajectory::{level_word, status_word};
+use super::{film, scene};
 use mcap::records::MessageHeader;
 use mcap::{Compression, McapError, WriteOptions, Writer};
-use serde_json::json;
 use shared::Position;
 use shared::params::Params;
 use shared::scenario::Scenario;
@@ -39,10 +25,8 @@ const TICKS_PER_CHUNK: u64 = 25;
 pub struct LogWriter {
     path: PathBuf,
     writer: Writer<File>,
-    layout: u16,
-    scene: u16,
-    poses: u16,
-    team: u16,
+    /// In the order of [`film::channels`].
+    channels: Vec<u16>,
     sample_time: f64,
 }
 
@@ -66,29 +50,21 @@ impl LogWriter {
             .disable_seeking(true) // a chunk reaches the file whole or not at all
             .library(concat!("vodca ", env!("CARGO_PKG_VERSION")))
             .create(file)?;
-        let mut channel = |topic, schema, schema_encoding, data, encoding| {
-            let schema = writer.add_schema(schema, schema_encoding, data)?;
-            writer.add_channel(schema, topic, encoding, &BTreeMap::new())
-        };
-        let layout = channel("/layout", "foxglove.SceneUpdate", "protobuf", scene::SCENE_UPDATE, "protobuf")?;
-        let moving = channel("/scene", "foxglove.SceneUpdate", "protobuf", scene::SCENE_UPDATE, "protobuf")?;
-        let poses = channel("/poses", "foxglove.PosesInFrame", "protobuf", scene::POSES_IN_FRAME, "protobuf")?;
-        let team = channel("/team", "vodca.Team", "jsonschema", team_schema().as_bytes(), "json")?;
-        let sample_time = params.model.sample_time;
-        let mut log = Self { path, writer, layout, scene: moving, poses, team, sample_time };
-        log.put(log.layout, 0, scene::layout(scenario, params).bytes())?;
+        let mut channels = Vec::new();
+        for film::Channel { topic, schema, schema_encoding, description, encoding } in film::channels() {
+            let schema = writer.add_schema(schema, schema_encoding, &description)?;
+            channels.push(writer.add_channel(schema, topic, encoding, &BTreeMap::new())?);
+        }
+        let mut log = Self { path, writer, channels, sample_time: params.model.sample_time };
+        log.put(film::LAYOUT, 0, &film::layout(scenario, params))?;
         Ok(log)
     }
 
     /// Appends one tick.
     pub fn tick(&mut self, scenario: &Scenario, params: &Params, tick: u64, steps: &[Step]) -> Result<(), RecordError> {
-        let time = self.nanoseconds(tick);
-        let scene: Message = scene::team(scenario, params, time, steps);
-        let poses = scene::poses(time, steps);
-        let team = team_values(scenario, tick, steps).to_string();
-        self.put(self.scene, tick, scene.bytes())
-            .and_then(|()| self.put(self.poses, tick, poses.bytes()))
-            .and_then(|()| self.put(self.team, tick, team.as_bytes()))
+        let mut messages = film::tick(scenario, params, tick, steps).into_iter();
+        messages
+            .try_for_each(|(channel, data)| self.put(channel, tick, &data))
             .and_then(|()| if (tick + 1).is_multiple_of(TICKS_PER_CHUNK) { self.writer.flush() } else { Ok(()) })
             .map_err(|error| record_error(self.path.clone(), error))
     }
@@ -101,14 +77,15 @@ impl LogWriter {
         }
     }
 
-    fn put(&mut self, channel_id: u16, tick: u64, data: &[u8]) -> Result<(), McapError> {
-        let log_time = self.nanoseconds(tick);
-        let header = MessageHeader { channel_id, sequence: tick as u32, log_time, publish_time: log_time };
+    fn put(&mut self, channel: usize, tick: u64, data: &[u8]) -> Result<(), McapError> {
+        let log_time = film::nanoseconds(self.sample_time, tick);
+        let header = MessageHeader {
+            channel_id: self.channels[channel],
+            sequence: tick as u32,
+            log_time,
+            publish_time: log_time,
+        };
         self.writer.write_to_known_channel(&header, data)
-    }
-
-    fn nanoseconds(&self, tick: u64) -> u64 {
-        (tick as f64 * self.sample_time * 1e9).round() as u64
     }
 }
 
@@ -130,54 +107,11 @@ fn record_error(path: PathBuf, error: McapError) -> RecordError {
     }
 }
 
-/// The message on `/team`.
-fn team_values(scenario: &Scenario, tick: u64, steps: &[Step]) -> serde_json::Value {
-    let robots: Vec<_> = steps
-        .iter()
-        .zip(&scenario.robots)
-        .map(|(step, robot)| {
-            json!({
-                "x": step.position.x, "y": step.position.y, "ux": step.input.x, "uy": step.input.y,
-                "distance": (robot.set_point - step.position).norm(),
-                "horizon": step.horizon, "rows": step.rows,
-                "level": level_word(step.level), "status": status_word(step.status), "shielded": step.shielded,
-            })
-        })
-        .collect();
-    json!({ "tick": tick, "robots": robots })
-}
-
-/// JSON schema of [`team_values`].
-fn team_schema() -> String {
-    let number = |what| json!({ "type": "number", "description": what });
-    let integer = |what| json!({ "type": "integer", "description": what });
-    let word = |what| json!({ "type": "string", "description": what });
-    json!({
-        "title": "vodca.Team",
-        "type": "object",
-        "properties": {
-            "tick": integer("k"),
-            "robots": { "type": "array", "items": { "type": "object", "properties": {
-                "x": number("position at the start of the tick, m"),
-                "y": number("position at the start of the tick, m"),
-                "ux": number("input applied during the tick, m/s"),
-                "uy": number("input applied during the tick, m/s"),
-                "distance": number("to the set-point at the start of the tick, m"),
-                "horizon": integer("prediction steps, 1..=49"),
-                "rows": integer("collision rows of the QP"),
-                "level": word("rung of the solver ladder that gave the plan"),
-                "status": word("how the plan came about"),
-                "shielded": { "type": "boolean", "description": "whether the last check changed the input" },
-            }}},
-        },
-    })
-    .to_string()
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::samples;
     use super::*;
+    use serde_json::json;
 
     fn record(path: PathBuf, ticks: u64) -> Vec<u8> {
         let (scenario, params) = (samples::scenario(3), Params::paper());

@@ -12,6 +12,7 @@
 //! A run that is cut leaves everything up to its last tick and no `summary.json`.
 
 pub mod about;
+pub(crate) mod film;
 pub mod folder;
 pub mod horizons;
 pub mod latency;

@@ -50,8 +50,8 @@ impl Message {
     }
 
     /// The encoded message.
-    pub(super) fn bytes(&self) -> &[u8] {
-        &self.0
+    pub(super) fn into_bytes(self) -> Vec<u8> {
+        self.0
     }
 
     fn delimited(&mut self, number: u64, bytes: &[u8]) {
@@ -124,16 +124,16 @@ mod tests {
     #[test]
     fn the_examples_of_the_encoding_guide_come_out() {
         // protobuf.dev, "Encoding": a = 150; b = "testing"; c = { a = 150 }.
-        assert_eq!(Message::default().integer(1, 150).bytes(), [0x08, 0x96, 0x01]);
-        assert_eq!(Message::default().text(2, "testing").bytes(), b"\x12\x07testing");
+        assert_eq!(Message::default().integer(1, 150).into_bytes(), [0x08, 0x96, 0x01]);
+        assert_eq!(Message::default().text(2, "testing").into_bytes(), b"\x12\x07testing");
         let inner = Message::default().integer(1, 150);
-        assert_eq!(Message::default().message(3, &inner).bytes(), [0x1a, 0x03, 0x08, 0x96, 0x01]);
+        assert_eq!(Message::default().message(3, &inner).into_bytes(), [0x1a, 0x03, 0x08, 0x96, 0x01]);
     }
 
     #[test]
     fn doubles_are_little_endian_and_zero_is_left_out() {
-        assert_eq!(Message::default().double(1, 1.0).bytes(), [0x09, 0, 0, 0, 0, 0, 0, 0xf0, 0x3f]);
-        assert_eq!(Message::default().double(1, 0.0).bytes(), [0u8; 0]);
-        assert_eq!(Message::default().double(1, -0.0).bytes().len(), 9);
+        assert_eq!(Message::default().double(1, 1.0).into_bytes(), [0x09, 0, 0, 0, 0, 0, 0, 0xf0, 0x3f]);
+        assert_eq!(Message::default().double(1, 0.0).into_bytes(), [0u8; 0]);
+        assert_eq!(Message::default().double(1, -0.0).into_bytes().len(), 9);
     }
 }

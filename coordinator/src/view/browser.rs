@@ -3,6 +3,7 @@
 
 use super::ViewError;
 use super::frame::{Frame, News, Slot};
+use super::viewers::Viewers;
 use crate::page;
 use crate::page::run_data::live_frame;
 use agent::layout::Layout;
@@ -11,17 +12,12 @@ use shared::scenario::Scenario;
 use std::io::{self, Write};
 use std::net::Ipv4Addr;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread::{self, JoinHandle};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 use tiny_http::{Header, Request, Response, Server};
 
-/// Most browsers that are served at a time: each has a thread.
-const MOST_VIEWERS: usize = 8;
 /// How long a silent run goes without a word to a viewer; a viewer that is gone is noticed then.
 const HEARTBEAT: Duration = Duration::from_secs(5);
-/// How long the end of a run waits for viewers to take the last frame.
-const FAREWELL: Duration = Duration::from_millis(500);
 const EVENTS: &str =
     "HTTP/1.1 200 OK\r\nContent-Type: text/event-stream\r\nCache-Control: no-store\r\nConnection: close\r\n\r\n";
 
@@ -29,7 +25,7 @@ const EVENTS: &str =
 pub(super) struct BrowserView {
     server: Arc<Server>,
     address: String,
-    viewers: Arc<AtomicUsize>,
+    viewers: Viewers,
     thread: JoinHandle<()>,
 }
 
@@ -60,7 +56,7 @@ impl BrowserView {
             layout: Layout::of(scenario, params.model.min_separation),
             page: page::live(scenario, params, horizons),
         });
-        let viewers = Arc::new(AtomicUsize::new(0));
+        let viewers = Viewers::default();
         let (serving, counted) = (server.clone(), viewers.clone());
         let thread = thread::spawn(move || {
             while let Ok(request) = serving.recv() {
@@ -77,16 +73,13 @@ impl BrowserView {
 
     /// Gives the viewers a moment to take the last frame, then ends. One that does not is left behind.
     pub(super) fn close(self) {
-        let start = Instant::now();
-        while self.viewers.load(Ordering::Acquire) > 0 && start.elapsed() < FAREWELL {
-            thread::sleep(Duration::from_millis(5));
-        }
+        self.viewers.farewell();
         self.server.unblock();
         let _ = self.thread.join(); // a panic in it has been reported on standard error
     }
 }
 
-fn answer(request: Request, shown: &Arc<Shown>, viewers: &Arc<AtomicUsize>) {
+fn answer(request: Request, shown: &Arc<Shown>, viewers: &Viewers) {
     // A page of another origin must not read the run by pointing its own name at 127.0.0.1.
     let local = |host: &str| host.starts_with("127.0.0.1:") || host.starts_with("localhost:");
     let host = request.headers().iter().find(|header| header.field.equiv("Host"));
@@ -97,16 +90,17 @@ fn answer(request: Request, shown: &Arc<Shown>, viewers: &Arc<AtomicUsize>) {
             let response = html.fold(Response::from_string(shown.page.clone()), Response::with_header);
             request.respond(response)
         }
-        "/frames" if viewers.load(Ordering::Acquire) >= MOST_VIEWERS => request.respond(Response::empty(503)),
-        "/frames" => {
-            viewers.fetch_add(1, Ordering::AcqRel);
-            let (shown, viewers) = (shown.clone(), viewers.clone());
-            thread::spawn(move || {
-                let _ = send_frames(request.into_writer(), &shown); // a viewer that is gone is none
-                viewers.fetch_sub(1, Ordering::AcqRel);
-            });
-            Ok(())
-        }
+        "/frames" => match viewers.enter() {
+            None => request.respond(Response::empty(503)),
+            Some(guest) => {
+                let shown = shown.clone();
+                thread::spawn(move || {
+                    let _ = send_frames(request.into_writer(), &shown); // a viewer that is gone is none
+                    drop(guest);
+                });
+                Ok(())
+            }
+        },
         _ => request.respond(Response::empty(404)),
     };
     if let Err(error) = answered {
@@ -181,6 +175,24 @@ mod tests {
         let events = text(viewer);
         assert!(events.contains("\"tick\":7") && events.ends_with("event: end\ndata: {}\n\n"), "{events}");
         view.close();
+    }
+
+    #[test]
+    fn a_browser_that_never_reads_holds_up_neither_the_run_nor_the_others() {
+        let slot = Arc::new(Slot::default());
+        let view = BrowserView::open(0, slot.clone(), &samples::scenario(150), &Params::safe(), "fixed:3").unwrap();
+        let _deaf = ask(&view, "/frames", "127.0.0.1:1");
+        let other = ask(&view, "/frames", "127.0.0.1:1");
+        let reader = thread::spawn(move || text(other));
+        // Far more than the system buffers for a socket.
+        for tick in 0..400 {
+            let _ = slot.offer(Frame { steps: samples::steps(150, tick), turns: vec![0.0; 150], ..sample(tick) });
+            thread::sleep(Duration::from_millis(1));
+        }
+        slot.end(Some(Frame { steps: samples::steps(150, 400), turns: vec![0.0; 150], ..sample(400) }));
+        let events = reader.join().unwrap();
+        assert!(events.contains("\"tick\":400") && events.ends_with("event: end\ndata: {}\n\n"));
+        view.close(); // although the deaf one is still there
     }
 
     #[test]

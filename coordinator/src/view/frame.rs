@@ -1,5 +1,6 @@
 //! One moment of a run, and the slot in which the newest one waits for the views.
 
+use crate::policy::Acting;
 use shared::step::Step;
 use std::sync::{Arc, Condvar, Mutex, PoisonError, TryLockError};
 use std::time::Duration;
@@ -23,6 +24,8 @@ pub struct Frame {
     pub min_separation: f64,
     /// Fallbacks so far, over all robots.
     pub fallbacks: u64,
+    /// Who chose the horizons, in a run with a policy.
+    pub acting: Option<Acting>,
 }
 
 /// Holds the newest frame.
@@ -91,6 +94,7 @@ impl Slot {
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
+    use crate::policy::Source;
     use crate::record::samples;
 
     pub(in crate::view) fn sample(tick: u64) -> Frame {
@@ -103,6 +107,7 @@ pub(super) mod tests {
             arrived: 1,
             min_separation: 1.75,
             fallbacks: 3,
+            acting: Some(Acting { source: Source::Policy, version: 2, sha256: [0xab; 32] }),
         }
     }
 

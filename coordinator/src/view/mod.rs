@@ -1,15 +1,20 @@
-//! Views of a run while it goes on: in the terminal and in a browser.
+//! Views of a run while it goes on: in the terminal, in a browser, in Foxglove.
 //!
 //! *Invariant*: a view never holds the run up. The run leaves its newest frame in a slot, at most twenty
 //! times a second and only if no reader has the slot just then; views take frames out at their own pace.
 
 mod browser;
+#[cfg_attr(not(feature = "foxglove"), path = "foxglove_absent.rs")]
+mod foxglove;
 mod frame;
 mod terminal;
+mod viewers;
 
+use crate::run::Tick;
 use crate::stdout;
 use agent::vodca::memory::ConflictMemory;
 use browser::BrowserView;
+use foxglove::FoxgloveView;
 pub use frame::Frame;
 use frame::Slot;
 use shared::metrics::RunMetrics;
@@ -31,6 +36,8 @@ pub struct Wanted {
     pub terminal: bool,
     /// In a browser, from this port of the loopback interface; 0: any free one.
     pub browser: Option<u16>,
+    /// In Foxglove or Lichtblick, from this port of the loopback interface; 0: any free one.
+    pub foxglove: Option<u16>,
     /// Where the horizons come from, to be shown.
     pub horizons: String,
 }
@@ -52,6 +59,10 @@ pub enum ViewError {
         /// What the system said.
         reason: String,
     },
+    /// Built without it.
+    #[error("this build has no Foxglove view; `./run.sh` builds it when --foxglove is given (`--features foxglove`)")]
+    #[cfg_attr(feature = "foxglove", allow(dead_code))] // the other build says it
+    NoFoxglove,
     /// Where to look could not be said.
     #[error(transparent)]
     Print(#[from] stdout::PrintError),
@@ -62,6 +73,7 @@ pub struct Views {
     slot: Arc<Slot>,
     terminal: Option<TerminalView>,
     browser: Option<BrowserView>,
+    foxglove: Option<FoxgloveView>,
     params: Params,
     memories: Vec<ConflictMemory>,
     before: Vec<Step>,
@@ -81,6 +93,13 @@ impl Views {
         if let Some(view) = &browser {
             stdout::line(format_args!("{:<16}{}", "live view", view.address()))?;
         }
+        let foxglove = match wanted.foxglove {
+            Some(port) => Some(FoxgloveView::open(port, slot.clone(), scenario, params)?),
+            None => None,
+        };
+        if let Some(view) = &foxglove {
+            stdout::line(format_args!("{:<16}{}", "foxglove", view.address()))?;
+        }
         let terminal = match wanted.terminal {
             true if !io::stdout().is_terminal() => return Err(ViewError::NoTerminal),
             true => Some(TerminalView::open(slot.clone(), scenario, params, &wanted.horizons)?),
@@ -90,6 +109,7 @@ impl Views {
             slot,
             terminal,
             browser,
+            foxglove,
             params: params.clone(),
             memories: vec![ConflictMemory::default(); scenario.robots.len()],
             before: Vec::new(),
@@ -100,10 +120,11 @@ impl Views {
     }
 
     /// Takes in a tick that took `duration`; `metrics` have seen it already.
-    pub fn tick(&mut self, tick: u64, steps: &[Step], duration: Duration, metrics: &RunMetrics) {
-        if self.terminal.is_none() && self.browser.is_none() {
+    pub fn tick(&mut self, seen: &Tick<'_>, duration: Duration, metrics: &RunMetrics) {
+        if self.terminal.is_none() && self.browser.is_none() && self.foxglove.is_none() {
             return;
         }
+        let Tick { tick, steps, acting, .. } = *seen;
         let fell_back = |step: &&Step| matches!(step.status, Status::Shifted | Status::Stopped);
         self.fallbacks += steps.iter().filter(fell_back).count() as u64;
         if Instant::now() >= self.next || metrics.arrived_all() {
@@ -117,6 +138,7 @@ impl Views {
                 arrived: metrics.arrived(),
                 min_separation: metrics.min_separation(),
                 fallbacks: self.fallbacks,
+                acting,
             };
             self.last = self.slot.offer(frame);
         }
@@ -135,6 +157,9 @@ impl Views {
         self.terminal = None;
         if let Some(browser) = self.browser.take() {
             browser.close();
+        }
+        if let Some(foxglove) = self.foxglove.take() {
+            foxglove.close();
         }
     }
 }

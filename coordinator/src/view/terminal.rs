@@ -91,8 +91,10 @@ impl Shown {
 }
 
 fn draw(area: &mut ratatui::Frame<'_>, frame: &Frame, shown: &Shown) {
-    let [head, body] = Layout::vertical([Constraint::Length(3), Constraint::Min(1)]).areas(area.area());
-    area.render_widget(Paragraph::new(heading(frame, shown)), head);
+    let heading = heading(frame, shown);
+    let [head, body] =
+        Layout::vertical([Constraint::Length(heading.height() as u16), Constraint::Min(1)]).areas(area.area());
+    area.render_widget(Paragraph::new(heading), head);
     let header = Row::new(["robot", "distance m", "horizon", "rows", "QP us", "level", "status"]).bold();
     let rows = frame.steps.iter().zip(&shown.set_points).enumerate().map(|(robot, (step, set_point))| {
         Row::new([
@@ -118,11 +120,13 @@ fn heading<'a>(frame: &Frame, shown: &Shown) -> Text<'a> {
     let (tick, arrived, robots) = (frame.tick + 1, frame.arrived, frame.steps.len());
     let milliseconds = frame.duration.as_secs_f64() * 1e3;
     let fallbacks = frame.fallbacks;
-    Text::from(vec![
+    let mut lines = vec![
         Line::from(format!("{scenario}  horizons {horizons}")).bold(),
         Line::from(format!("tick {tick} of {max_ticks}  arrived {arrived}/{robots}  tick time {milliseconds:.2} ms")),
         Line::from(format!("min separation {nearest}  fallbacks {fallbacks}")),
-    ])
+    ];
+    lines.extend(frame.acting.map(|acting| Line::from(format!("policy {acting}"))));
+    Text::from(lines)
 }
 
 #[cfg(test)]
@@ -135,7 +139,7 @@ mod tests {
     #[test]
     fn a_frame_shows_the_team_as_text() {
         let shown = Shown::new(&samples::scenario(2), &Params::safe(), "fixed:3");
-        let mut terminal = Terminal::new(TestBackend::new(68, 6)).unwrap();
+        let mut terminal = Terminal::new(TestBackend::new(68, 7)).unwrap();
         terminal.draw(|area| draw(area, &sample(4), &shown)).unwrap();
         let cells: Vec<&str> = terminal.backend().buffer().content.iter().map(|cell| cell.symbol()).collect();
         let lines: Vec<String> = cells.chunks(68).map(|line| line.concat().trim_end().to_string()).collect();
@@ -145,6 +149,7 @@ mod tests {
                 "sample  horizons fixed:3",
                 "tick 5 of 100  arrived 1/2  tick time 0.42 ms",
                 "min separation 1.750 m (r_min 1.5 m)  fallbacks 3",
+                "policy v000002 (sha256 abababababab)",
                 "robot  distance m  horizon  rows  QP us      level        status",
                 "0      3.51        3        0     0.4        closed_form  solved",
                 "1      3.51        3        0     0.4        closed_form  solved",

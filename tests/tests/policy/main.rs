@@ -3,7 +3,9 @@
 #![allow(clippy::unwrap_used)] // a panic is how a test fails
 
 mod bench;
+mod compared;
 mod killed;
+mod picked_up;
 mod swap;
 
 use shared::policy::contract::Contract;

@@ -25,6 +25,8 @@ pub const MANIFEST_FILE: &str = "manifest.json";
 /// Name of the reference set in a version's folder.
 pub const REFERENCE_FILE: &str = "reference.json";
 const CURRENT_FILE: &str = "CURRENT";
+/// Where policies lie that are called by their names alone.
+const POLICIES: &str = "policies";
 
 /// Number of a version: `v000017`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -58,6 +60,15 @@ pub enum FolderError {
         version: Version,
         /// The folder.
         folder: String,
+    },
+    /// Nothing has that name.
+    #[error(
+        "there is no policy {name}: neither {name} nor {POLICIES}/{name} is there; name an ONNX file or a policies folder \
+         (`./run.sh policy new --random --robots N {POLICIES}/try` writes one to try things with)"
+    )]
+    NotThere {
+        /// As given.
+        name: String,
     },
     /// A folder that holds no policy.
     #[error("{0} holds no policy: there is no CURRENT and no actor.onnx; `policy publish FOLDER MODEL` writes one")]
@@ -181,12 +192,20 @@ impl PolicyFolder {
     }
 }
 
-/// The model that `path` means: itself, the current version of a policies folder, or `actor.onnx` in it.
-pub fn resolve(path: &Path) -> Result<PathBuf, FolderError> {
+/// The file or folder that `name` means: itself, or the folder of that name in `policies/`.
+pub fn locate(name: &Path) -> Result<PathBuf, FolderError> {
+    let places = [name.to_owned(), Path::new(POLICIES).join(name)];
+    let there = places.into_iter().find(|path| path.exists());
+    there.ok_or_else(|| FolderError::NotThere { name: name.display().to_string() })
+}
+
+/// The model that `name` means: a file, the current version of a policies folder, or `actor.onnx` in it.
+pub fn resolve(name: &Path) -> Result<PathBuf, FolderError> {
+    let path = locate(name)?;
     if !path.is_dir() {
-        return Ok(path.to_path_buf());
+        return Ok(path);
     }
-    let folder = PolicyFolder::new(path);
+    let folder = PolicyFolder::new(&path);
     match folder.current()? {
         Some(version) => Ok(folder.model(version)),
         None if path.join(MODEL_FILE).exists() => Ok(path.join(MODEL_FILE)),
@@ -283,5 +302,7 @@ mod tests {
         }
         assert_eq!(folder.versions().unwrap(), []);
         assert!(resolve(folder.root()).unwrap_err().to_string().contains("holds no policy"));
+        let message = resolve(Path::new("no-such-policy")).unwrap_err().to_string();
+        assert!(message.contains("neither no-such-policy nor policies/no-such-policy is there"), "{message}");
     }
 }
