@@ -40,7 +40,7 @@ pub fn straight(target: &mut Target, from: Position, to: Position, horizon: Hori
 }
 
 /// The set-point seen turned to the right while in conflict: g' = p + R(-a)(g - p) with
-/// a = phi s clip((|g - p| - fade_start) / (fade_end - fade_start), 0, 1). `in_conflict` is s, 0..=1.
+/// a = phi s clip((|g - p| - fade_start) / (fade_end - fade_start), 0, 1). `in_conflict` is s, 0..=`aim.most`.
 pub fn aim(aim: &Aim, in_conflict: f64, position: Position, set_point: Position) -> Position {
     let way = set_point - position;
     let fade = ((way.norm() - aim.fade_start) / (aim.fade_end - aim.fade_start)).clamp(0.0, 1.0);
@@ -51,6 +51,7 @@ pub fn aim(aim: &Aim, in_conflict: f64, position: Position, set_point: Position)
 #[cfg(test)]
 mod tests {
     use super::*;
+    use shared::params::Params;
 
     #[test]
     fn the_straight_reference_obeys_the_model_and_ends_at_the_set_point() {
@@ -69,7 +70,7 @@ mod tests {
 
     #[test]
     fn aim_turns_right_far_from_the_set_point_only() {
-        let params = Aim { angle: 0.35, memory: 0.1, fade_start: 1.5, fade_end: 4.5 };
+        let params = Aim { angle: 0.35, fade_start: 1.5, fade_end: 4.5, ..Params::paper().aim };
         let here = Position::zeros();
         let far = Position::new(10.0, 0.0);
         let turned = aim(&params, 1.0, here, far);

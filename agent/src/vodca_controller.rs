@@ -10,6 +10,7 @@ use crate::safety::cell::{Cell, Present};
 use crate::safety::last_check::{TOLERANCE, is_answer, nearest_safe};
 use crate::vodca::memory::ConflictMemory;
 use crate::vodca::rows::collision_rows;
+use crate::vodca::traffic::{self, Walk};
 use crate::vodca::{Course, Hazard};
 use shared::horizon::Horizon;
 use shared::params::{Infeasible, Params, Reference};
@@ -70,6 +71,23 @@ impl VodcaController {
         let vodca = &self.params.vodca;
         let turn = self.memory.turn(vodca);
         collision_rows(vodca, min_separation, turn, &previous.prediction, view.horizon, hazards, &mut self.rows)
+    }
+
+    /// Rule 4: the traffic ahead, by where everybody wishes to go. No plan reaches as far at every horizon.
+    fn look_ahead(&self, view: &View<'_>) -> f64 {
+        let Params { model, aim, .. } = &self.params;
+        let own = Walk { from: view.position, to: self.layout.set_points[self.robot] };
+        if aim.look_ahead == 0 || aim.angle == 0.0 || (own.to - own.from).norm() < aim.fade_start {
+            return 0.0;
+        }
+        let stride = model.sample_time * model.max_speed;
+        let others = view.neighbours.iter().enumerate().filter(|(other, _)| *other != self.robot);
+        let meetings = others.filter_map(|(other, neighbour)| {
+            let walk = Walk { from: neighbour.present?.1, to: neighbour.set_point };
+            let extra = self.layout.robot_extra[self.robot] + self.layout.robot_extra[other];
+            traffic::meeting(own, walk, model.min_separation + extra, stride, aim.look_ahead)
+        });
+        traffic::traffic(aim, meetings)
     }
 
     /// Rule 1: the reference, aimed by rule 4.
@@ -192,7 +210,8 @@ impl Controller for VodcaController {
     fn tick(&mut self, view: &View<'_>) -> Decision {
         let started = Instant::now();
         let rows = self.detect(view);
-        self.memory.remember(&self.params.aim, &self.params.vodca, rows);
+        let traffic = self.look_ahead(view);
+        self.memory.remember(&self.params.aim, &self.params.vodca, rows, traffic);
         self.aim(view);
         self.bound_cell(view);
         let solving = Instant::now();

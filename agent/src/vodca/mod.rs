@@ -4,5 +4,6 @@
 pub mod conflict;
 pub mod memory;
 pub mod rows;
+pub mod traffic;
 
 pub use conflict::{Conflict, Course, Hazard};

@@ -236,6 +236,14 @@ pub struct Aim {
     pub fade_start: f64,
     /// Distance to the set-point from which the turn is full, m.
     pub fade_end: f64,
+    /// Steps over which straight walks are compared: whoever will be met counts as conflict; 0 is off.
+    pub look_ahead: usize,
+    /// Meetings within this many steps do not count as traffic.
+    pub near: usize,
+    /// What every meeting beyond the first adds to the turn, as a share of `angle`.
+    pub traffic: f64,
+    /// The largest turn in traffic, as a multiple of `angle`.
+    pub most: f64,
 }
 
 /// Give way to robots that still travel (safe.md, rule 3).

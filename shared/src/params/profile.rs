@@ -68,7 +68,16 @@ impl Params {
                 slack_linear: 1e5,
                 slack_quadratic: 1e3,
             },
-            aim: Aim { angle: 0.0, memory: 0.1, fade_start: 1.5, fade_end: 4.5 },
+            aim: Aim {
+                angle: 0.0,
+                memory: 0.1,
+                fade_start: 1.5,
+                fade_end: 4.5,
+                look_ahead: 0,
+                near: 0,
+                traffic: 0.0,
+                most: 1.0,
+            },
             give_way: GiveWay { radius: 0.0, clearance: 0.1 },
             cell: Cell { enabled: false, separation: 1.5, escape: 0.0, noise_bound: 0.0 },
             horizon: HorizonParams { jitter: 0 },
@@ -97,7 +106,16 @@ impl Params {
         params.vodca.softness = Softness::Soft;
         params.vodca.slack_linear = 1e3;
         params.mpc.input_weight = 5.0;
-        params.aim = Aim { angle: 0.19, memory: 0.3, fade_start: 1.5, fade_end: 6.0 };
+        params.aim = Aim {
+            angle: 0.19,
+            memory: 0.3,
+            fade_start: 1.5,
+            fade_end: 6.0,
+            look_ahead: 25,
+            near: 10,
+            traffic: 0.3,
+            most: 2.5,
+        };
         params.horizon.jitter = 2;
         params.give_way.radius = 1.5;
         params.cell.enabled = true;
