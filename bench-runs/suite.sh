@@ -58,13 +58,19 @@ ablations() { # each rule of the safe profile left out or changed
         'safe[vodca.turn=0.15,vodca.turn_lasting=0.15]:fixed:20' \
         'safe[give_way.radius=0]:fixed:20' \
         'safe[give_way.radius=0.5]:fixed:20' \
+        'safe[give_way.radius=1.5]:fixed:20' \
         'safe[give_way.radius=1000]:fixed:20' \
         'safe[aim.memory=1]:fixed:20' \
         'safe[aim.memory=0.1]:fixed:20' \
         'safe[aim.angle=0.35]:fixed:20' \
+        'safe[aim.look_ahead=0]:fixed:20' \
+        'safe[aim.look_ahead=40]:fixed:20' \
+        'safe[aim.traffic=0]:fixed:20' \
+        'safe[aim.near=0]:fixed:20' \
         'safe[cell.enabled=false]:fixed:20' \
         'safe[cell.separation=0.75]:fixed:20' \
         'safe[vodca.slack_linear=100000]:fixed:20' \
+        'safe[vodca.slack_linear=1000]:fixed:20' \
         'safe[mpc.input_weight=10]:fixed:20' \
         'safe[mpc.input_weight=1]:fixed:20' \
         'safe[mpc.reference=set_point]:fixed:20' \

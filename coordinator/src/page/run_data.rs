@@ -105,7 +105,8 @@ fn lines(scenario: &Scenario, params: &Params, ticks: &[Vec<Step>]) -> Value {
     for (tick, pair) in ticks.windows(2).enumerate() {
         for robot in 0..pair[1].len() {
             let turn = memories[robot].turn(&params.vodca);
-            memories[robot].remember(&params.aim, &params.vodca, pair[1][robot].rows as usize);
+            // Only the turn of the rows is asked of it, which traffic ahead does not change.
+            memories[robot].remember(&params.aim, &params.vodca, pair[1][robot].rows as usize, 0.0);
             let rows = rows(params, &layout, robot, turn, tick as u64 + 1, &pair[0], &pair[1]);
             counts.push(rows.len());
             found.extend(rows);

@@ -144,7 +144,8 @@ impl Views {
         }
         if tick > 0 {
             for (memory, step) in self.memories.iter_mut().zip(steps) {
-                memory.remember(&self.params.aim, &self.params.vodca, step.rows as usize);
+                // Only the turn of the rows is asked of it, which traffic ahead does not change.
+                memory.remember(&self.params.aim, &self.params.vodca, step.rows as usize, 0.0);
             }
         }
         self.before.clear();

@@ -102,9 +102,9 @@ impl Params {
         params.vodca.rows = RowChoice::Each;
         params.vodca.turn = 0.24;
         params.vodca.turn_lasting = 0.48;
-        params.vodca.lasting_memory = 0.02;
+        params.vodca.lasting_memory = 0.025;
         params.vodca.softness = Softness::Soft;
-        params.vodca.slack_linear = 1e3;
+        params.vodca.slack_linear = 500.0;
         params.mpc.input_weight = 5.0;
         params.aim = Aim {
             angle: 0.19,
@@ -117,7 +117,7 @@ impl Params {
             most: 2.5,
         };
         params.horizon.jitter = 2;
-        params.give_way.radius = 1.5;
+        params.give_way.radius = 1.2;
         params.cell.enabled = true;
         params
     }

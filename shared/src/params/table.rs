@@ -125,7 +125,7 @@ pub const ENTRIES: &[Entry] = &[
     entry("vodca.lasting_memory", "-", Above(0.0, 1.0), "ours", "share of the newest tick in the memory of how long a conflict has lasted; smaller: the turn grows later"),
     entry("vodca.softness", "-", OneOf(&["hard", "soft"]), "safe rule 2", "soft: rows have slack from the start, the QP is always feasible"),
     entry("vodca.infeasible", "-", OneOf(&["relax", "hold"]), "paper is silent", "hard rows without a solution: solve again with slack, or stand still (a trap)"),
-    entry("vodca.slack_linear", "1/m", Between(0.0, 1e9), "ours: rho1", "exact penalty: with 1e3 rows that could hold are violated in 17 % of problems, with 1e4 never"),
+    entry("vodca.slack_linear", "1/m", Between(0.0, 1e9), "ours: rho1", "exact penalty: with 1e3 rows that could hold are violated in 17 % of problems, with 1e4 never; smaller: shorter dense paths (the cells keep the separation), slower past obstacles"),
     entry("vodca.slack_quadratic", "1/m^2", Above(0.0, 1e9), "ours: rho2", "curvature of the penalty; keeps the QP strictly convex in the slack"),
     entry("aim.angle", "rad", Between(0.0, 1.5), "safe rule 4: phi", "largest right turn of the aim while in conflict; 0 is off"),
     entry("aim.memory", "-", Above(0.0, 1.0), "safe rule 4: lambda", "share of the newest tick; 1 forgets at once and chatters"),
