@@ -58,7 +58,6 @@ ablations() { # each rule of the safe profile left out or changed
         'safe[vodca.turn=0.15,vodca.turn_lasting=0.15]:fixed:20' \
         'safe[give_way.radius=0]:fixed:20' \
         'safe[give_way.radius=0.5]:fixed:20' \
-        'safe[give_way.radius=1.5]:fixed:20' \
         'safe[give_way.radius=1000]:fixed:20' \
         'safe[aim.memory=1]:fixed:20' \
         'safe[aim.memory=0.1]:fixed:20' \

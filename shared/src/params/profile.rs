@@ -117,7 +117,7 @@ impl Params {
             most: 2.5,
         };
         params.horizon.jitter = 2;
-        params.give_way.radius = 1.2;
+        params.give_way.radius = 1.5;
         params.cell.enabled = true;
         params
     }
