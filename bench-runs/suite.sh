@@ -58,6 +58,7 @@ ablations() { # each rule of the safe profile left out or changed
         'safe[vodca.turn=0.15,vodca.turn_lasting=0.15]:fixed:20' \
         'safe[give_way.radius=0]:fixed:20' \
         'safe[give_way.radius=0.5]:fixed:20' \
+        'safe[give_way.radius=1.5]:fixed:20' \
         'safe[give_way.radius=1000]:fixed:20' \
         'safe[aim.memory=1]:fixed:20' \
         'safe[aim.memory=0.1]:fixed:20' \
@@ -73,7 +74,8 @@ ablations() { # each rule of the safe profile left out or changed
         'safe[mpc.input_weight=10]:fixed:20' \
         'safe[mpc.input_weight=1]:fixed:20' \
         'safe[mpc.reference=set_point]:fixed:20' \
-        'safe[horizon.jitter=0]:fixed:20'
+        'safe[horizon.jitter=0]:fixed:20' \
+        'safe[horizon.jitter=2]:fixed:20'
 }
 random() { # ten thousand layouts nobody has looked at
     compare random random-boxes:10000 --controllers safe:random

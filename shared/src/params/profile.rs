@@ -116,8 +116,8 @@ impl Params {
             traffic: 0.3,
             most: 2.5,
         };
-        params.horizon.jitter = 2;
-        params.give_way.radius = 1.5;
+        params.horizon.jitter = 3;
+        params.give_way.radius = 1.2;
         params.cell.enabled = true;
         params
     }
