@@ -203,8 +203,8 @@ mod tests {
         let text = results().rows_table(None).csv();
         let lines: Vec<&str> = text.lines().collect();
         assert_eq!(lines[0], "part,what,n,count,p50_us,p90_us,p99_us,p999_us,max_us,floor_us,ratio");
-        assert_eq!(lines[1], "hop,\"a, busy\",,100,5.00,9.00,9.90,10.0,10.0,2.00,2.50");
-        assert_eq!(lines[2], "exchange,peer,14,100,5.00,9.00,9.90,10.0,10.0,,");
+        assert_eq!(lines[1], "hop,\"a, busy\",,100,5.00,9.01,9.90,10.0,10.0,2.00,2.50");
+        assert_eq!(lines[2], "exchange,peer,14,100,5.00,9.01,9.90,10.0,10.0,,");
         assert_eq!(results().rows_table(Some("hop")).csv().lines().count(), 3);
         assert_eq!(results().parts(), ["hop", "exchange"]);
     }
