@@ -95,7 +95,7 @@ impl<'a> Recorder<'a> {
         until: Until,
         written: &'a mut dyn FnMut(&Written) -> Result<(), RecordError>,
     ) -> Option<Self> {
-        let round = orders.next()?;
+        let round = orders.take()?;
         Some(Self {
             params,
             orders,
@@ -208,7 +208,7 @@ impl Director for Recorder<'_> {
             return Ok(true);
         }
         self.write_round()?;
-        match self.orders.next() {
+        match self.orders.take() {
             Some(round) => {
                 self.round = round;
                 Ok(true)

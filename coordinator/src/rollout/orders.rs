@@ -54,7 +54,7 @@ impl Orders {
     }
 
     /// The next round; `None`: there is none, or what came means nothing (logged).
-    pub fn next(&mut self) -> Option<Round> {
+    pub fn take(&mut self) -> Option<Round> {
         match self {
             Self::Fixed { episodes: 0, .. } => None,
             Self::Fixed { next, episodes, per_round } => {
@@ -112,7 +112,7 @@ mod tests {
     #[test]
     fn episodes_are_dealt_out_to_rounds() {
         let mut orders = Orders::Fixed { next: 4, episodes: 5, per_round: 2 };
-        let rounds: Vec<_> = std::iter::from_fn(|| orders.next()).map(|round| (round.number, round.episodes)).collect();
+        let rounds: Vec<_> = std::iter::from_fn(|| orders.take()).map(|round| (round.number, round.episodes)).collect();
         assert_eq!(rounds, [(4, 2), (5, 2), (6, 1)]);
     }
 
