@@ -95,10 +95,10 @@ fn a_time_limit_truncates_arrival_truncates_and_a_collision_terminates() {
         assert!(!at_once.2 && at_once.3 && at_once.1 < 350, "{at_once:?}");
         assert_eq!((later.1, later.2, later.3), (at_once.1 + 5, false, true));
     }
-    // Without rows robots drive through each other.
-    let blind = played("blind", "--scenario ex14_d --profile paper --horizon fixed:1");
+    // The published method collides here.
+    let collided = played("collided", "--scenario ex14_d --profile paper --horizon fixed:20");
     assert!(
-        blind.iter().all(|(_, ticks, terminated, truncated)| *terminated && !truncated && *ticks < 350),
-        "{blind:?}"
+        collided.iter().all(|(_, ticks, terminated, truncated)| *terminated && !truncated && *ticks < 350),
+        "{collided:?}"
     );
 }

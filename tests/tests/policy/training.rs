@@ -196,10 +196,14 @@ fn a_killed_training_leaves_no_robots_and_goes_on_from_its_checkpoint() {
     training.wait_until_rounds(2);
     signal(training.child.id(), "KILL");
     assert_eq!(training.end().code(), None);
-    // The only checkpoint is the one after the warm-up: later rounds are played again.
-    training.resume("--episodes 1");
+    // The only checkpoint is the one after the warm-up: later rounds are played again, as they were.
+    assert_eq!(training.checkpoint().0, 0);
+    training.resume("--episodes 2");
     training.done();
-    assert_eq!((training.checkpoint().0, training.rows().len()), (1, 1));
+    let mut undisturbed = Training::begin("--episodes 2");
+    undisturbed.done();
+    assert!(training.checkpoint() == undisturbed.checkpoint(), "the learners differ");
+    assert_eq!(training.rows().len(), 2);
 }
 
 #[test]
@@ -216,6 +220,35 @@ fn a_training_whose_robots_are_killed_says_so_and_ends() {
     assert!(said.contains("the rollouts in") && said.contains("ended"), "{said}");
     training.resume("--episodes 1");
     training.done();
+}
+
+#[test]
+fn a_disk_that_takes_no_checkpoint_ends_the_training_with_one_error() {
+    policy_server();
+    let place = tempfile::tempdir().unwrap();
+    let folder = place.path().join("all");
+    // Blocks of 512 bytes: the exchange's shared files and the actor are smaller, a checkpoint is larger.
+    let script = format!(
+        "trap '' XFSZ; ulimit -f 16384; exec \"$0\" train {SMALL} --learn hidden=512 --episodes 1 --out \"$1\""
+    );
+    let mut child = Command::new("sh")
+        .args(["-c", &script])
+        .arg(learner())
+        .arg(&folder)
+        .stdout(Stdio::null())
+        .stderr(File::create(place.path().join("stderr")).unwrap())
+        .spawn()
+        .unwrap();
+    wait_until("the checkpoint is refused", || child.try_wait().unwrap().is_some());
+    let said = fs::read_to_string(place.path().join("stderr")).unwrap();
+    assert_eq!(child.wait().unwrap().code(), Some(1), "{said}");
+    let errors: Vec<&str> = said.lines().filter(|line| line.starts_with("error: ")).collect();
+    assert!(errors.len() == 1 && errors[0].contains("cannot write") && errors[0].contains("space left"), "{said}");
+    wait_until("its processes end", || processes(&folder).is_empty());
+    let mut resumed = train(place.path(), &format!("--episodes 1 --resume {}", folder.display()));
+    wait_until("there is nothing to resume", || resumed.try_wait().unwrap().is_some());
+    let said = fs::read_to_string(place.path().join("stderr")).unwrap();
+    assert!(said.contains("holds no checkpoint of a training"), "{said}");
 }
 
 #[test]
