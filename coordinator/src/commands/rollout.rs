@@ -1,5 +1,6 @@
 //! `rollout`: episodes for a learner.
 
+use super::run::Exchange;
 use super::run_policy::PolicyArgs;
 use crate::exit::{self, Ending, Failure};
 use crate::policy::PolicyOptions;
@@ -69,6 +70,9 @@ pub struct Args {
     /// Change a parameter (repeatable)
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
+    /// How plans are exchanged; left out: peer up to 20 robots, relay above
+    #[arg(long)]
+    exchange: Option<Exchange>,
     /// Seed of everything random
     #[arg(long, default_value_t = 0)]
     seed: u64,
@@ -165,6 +169,7 @@ fn options(args: &Args, scenario: &Scenario, run: &RunFolder, episodes: Episodes
     options.horizons = args.horizon.to_string();
     options.seed = args.seed;
     options.episodes = episodes;
+    options.exchange = args.exchange.map_or(options.exchange, Into::into);
     if args.rounds_from_stdin {
         options.idle = Duration::from_secs(3600); // a trainer may take its time; robots end with us anyway
     }

@@ -98,11 +98,20 @@ fn number_of_robots(text: &str) -> Result<usize, String> {
 }
 
 #[derive(Clone, Copy, Debug, clap::ValueEnum)]
-enum Exchange {
+pub(super) enum Exchange {
     /// Every robot to every robot
     Peer,
     /// Through the coordinator
     Relay,
+}
+
+impl From<Exchange> for Kind {
+    fn from(exchange: Exchange) -> Self {
+        match exchange {
+            Exchange::Peer => Self::Peer,
+            Exchange::Relay => Self::Relay,
+        }
+    }
 }
 
 /// Runs the team and reports.
@@ -146,10 +155,7 @@ fn options(args: &Args, scenario: &Scenario, folder: &RunFolder) -> Result<Optio
     options.horizons = args.horizon.to_string();
     options.real_time = args.real_time;
     if let Some(exchange) = args.exchange {
-        options.exchange = match exchange {
-            Exchange::Peer => Kind::Peer,
-            Exchange::Relay => Kind::Relay,
-        };
+        options.exchange = exchange.into();
     }
     if args.by_hand {
         options.agents = Agents::ByHand;

@@ -6,7 +6,7 @@ use super::state::State;
 use crate::Losses;
 use crate::tensorboard::{Curves, CurvesError};
 use std::fs::{File, OpenOptions};
-use std::io::Write;
+use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -118,16 +118,26 @@ pub struct Curve {
 }
 
 impl Curve {
-    /// Opens the curves in the folder `out`, to go on after `updates` updates.
-    pub fn open(out: &Path, updates: u64) -> Result<Self, CurveError> {
+    /// Opens the curves in the folder `out`, to go on after `rounds` rounds: rows of later ones, which a
+    /// killed training wrote after its newest checkpoint, go, for these rounds are played again.
+    pub fn open(out: &Path, rounds: u64) -> Result<Self, CurveError> {
         let path = out.join("train.csv");
         let failed = |source| CurveError::Table { path: path.clone(), source };
-        let mut file = OpenOptions::new().create(true).append(true).open(&path).map_err(failed)?;
-        if file.metadata().map_err(failed)?.len() == 0 {
-            debug_assert_eq!(updates, 0, "a training that goes on has its curve");
-            let names: Vec<&str> = empty().scalars().iter().map(|(name, _)| *name).collect();
-            writeln!(file, "round,episodes,ticks,updates,{}", names.join(",")).map_err(failed)?;
-        }
+        let before = match std::fs::read_to_string(&path) {
+            Err(error) if error.kind() == ErrorKind::NotFound => String::new(),
+            read => read.map_err(failed)?,
+        };
+        let names: Vec<&str> = empty().scalars().iter().map(|(name, _)| *name).collect();
+        let mut text = format!("round,episodes,ticks,updates,{}\n", names.join(","));
+        let earlier = |line: &&str| {
+            let round = line.split(',').next().and_then(|round| round.parse::<u64>().ok());
+            line.ends_with('\n') && round.is_some_and(|round| round < rounds)
+        };
+        text.extend(before.split_inclusive('\n').filter(earlier));
+        // Beside and renamed: a full disk takes nothing away.
+        let beside = out.join(".train.csv");
+        std::fs::write(&beside, text).and_then(|()| std::fs::rename(&beside, &path)).map_err(failed)?;
+        let file = OpenOptions::new().append(true).open(&path).map_err(failed)?;
         Ok(Self { path, table: file, events: Curves::create(out)? })
     }
 
@@ -168,7 +178,7 @@ mod tests {
     fn the_curve_has_one_header_and_a_row_per_round() {
         let place = tempfile::tempdir().unwrap();
         for round in 0..2 {
-            let mut curve = Curve::open(place.path(), 0).unwrap();
+            let mut curve = Curve::open(place.path(), round).unwrap();
             curve.add(&Point { round, updates: 5, ..empty() }).unwrap();
         }
         let text = std::fs::read_to_string(place.path().join("train.csv")).unwrap();
@@ -177,5 +187,19 @@ mod tests {
         assert!(rows[0].starts_with("round,episodes,ticks,updates,rollout/return"));
         assert_eq!(rows[1].split(',').count(), rows[0].split(',').count());
         assert!(rows[2].starts_with("1,0,0,5,0,"));
+    }
+
+    #[test]
+    fn rounds_after_the_checkpoint_and_rows_that_were_cut_off_are_forgotten() {
+        let place = tempfile::tempdir().unwrap();
+        let path = place.path().join("train.csv");
+        let mut curve = Curve::open(place.path(), 0).unwrap();
+        (0..3).for_each(|round| curve.add(&Point { round, ..empty() }).unwrap());
+        let all = std::fs::read_to_string(&path).unwrap();
+        std::fs::write(&path, format!("{all}3,1")).unwrap();
+        Curve::open(place.path(), 4).unwrap();
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), all);
+        Curve::open(place.path(), 2).unwrap();
+        assert_eq!(std::fs::read_to_string(&path).unwrap().lines().count(), 3);
     }
 }

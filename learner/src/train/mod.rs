@@ -26,7 +26,7 @@ use shared::policy::folder::{FolderError, PolicyFolder, resolve};
 use shared::rollout::{RolloutError, Shard};
 use shared::scenario::{Scenario, SetupError, set_up};
 use shared::stop::StopFlag;
-use state::{Best, State, StateError};
+use state::{Best, Lock, State, StateError};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -106,33 +106,44 @@ pub struct Trainer {
     curve: Curve,
     /// Positions the actor was seen at, for its reference set.
     reference: Vec<Vec<f64>>,
+    /// Nobody else trains in `out` meanwhile.
+    _lock: Lock,
 }
 
 impl Trainer {
-    /// Begins a training in the folder `out`, which must be new or empty: plays the warm-up and starts
-    /// the sessions.
+    /// Begins a training in the folder `out`, which must be new or empty: plays the warm-up, starts
+    /// the sessions and leaves the first checkpoint. `None`: somebody asked to stop before.
     pub fn begin(plan: Plan, out: &Path, stop: &StopFlag) -> Result<Option<Self>, TrainError> {
-        state::prepare(out, &plan)?;
-        let scenario = layouts(&plan)?;
+        let scenario = layouts(&plan)?; // first: a plan that cannot be used leaves no folder
+        let lock = state::prepare(out, &plan)?;
         let robots = scenario[0].robots.len();
         let learner = Learner::new(2 * robots, robots, plan.settings.clone(), plan.seed);
-        let mut trainer = Self::start(plan, out, learner, State::default(), &scenario)?;
+        let mut trainer = Self::start(plan, out, learner, State::default(), &scenario, lock)?;
         let arguments = [trainer.rollout_arguments(0), ["--horizon".into(), "random".into()].into()].concat();
         let mut warm_up = Session::start(&arguments, &out.join("warm-up"))?;
         warm_up.order(0, trainer.plan.warm_up_episodes, None)?;
         let Some(round) = warm_up.answer(stop)? else { return Ok(None) };
         trainer.take(&round)?;
+        trainer.checkpoint()?; // whatever ends the first rounds, the warm-up need not be played again
         Ok(Some(trainer))
     }
 
     /// Goes on where the newest checkpoint in `out` stands.
     pub fn resume(out: &Path) -> Result<Self, TrainError> {
+        let lock = Lock::take(out)?;
         let (plan, learner, state) = state::load(out)?;
         let scenario = layouts(&plan)?;
-        Self::start(plan, out, learner, state, &scenario)
+        Self::start(plan, out, learner, state, &scenario, lock)
     }
 
-    fn start(plan: Plan, out: &Path, learner: Learner, state: State, layouts: &[Scenario]) -> Result<Self, TrainError> {
+    fn start(
+        plan: Plan,
+        out: &Path,
+        learner: Learner,
+        state: State,
+        layouts: &[Scenario],
+        lock: Lock,
+    ) -> Result<Self, TrainError> {
         let contract = contract(&plan, layouts);
         let folder = PolicyFolder::new(out.join("policy"));
         let reference = state.reference.clone();
@@ -153,7 +164,7 @@ impl Trainer {
         arguments.extend(["--start-jitter".into(), plan.evaluation_jitter.to_string()]);
         arguments.extend(["--seed".into(), shared::random::episode_seed(plan.seed, 3).to_string()]);
         let evaluation = Session::start(&arguments, &sessions.join(format!("{run:03}-evaluation")))?;
-        let curve = Curve::open(out, learner.updates())?;
+        let curve = Curve::open(out, state.round)?;
         Ok(Self {
             plan,
             out: out.to_owned(),
@@ -166,6 +177,7 @@ impl Trainer {
             evaluation,
             curve,
             reference,
+            _lock: lock,
         })
     }
 
@@ -212,7 +224,7 @@ impl Trainer {
         }
         let learnt = start.elapsed();
         // To its end, whoever asks to stop: rounds are short.
-        let Some(round) = self.rollouts.answer(&StopFlag::default())? else { return Err(gone(&self.out)) };
+        let round = self.rollouts.whole_answer()?;
         self.take(&round)?;
         self.state.episodes += self.plan.round_episodes;
         self.state.round += 1;
@@ -263,7 +275,7 @@ impl Trainer {
     /// Plays the evaluation with the newest actor; keeps it when it is the best so far.
     fn evaluate(&mut self) -> Result<Score, TrainError> {
         self.evaluation.order(self.state.round, self.plan.evaluation_episodes, Some(&self.published))?;
-        let Some(round) = self.evaluation.answer(&StopFlag::default())? else { return Err(gone(&self.out)) };
+        let round = self.evaluation.whole_answer()?;
         let score = Score::of(&round.episodes);
         let better = self.state.best.as_ref().is_none_or(|best| score.beats(&best.score, self.plan.most_ticks));
         if better {
@@ -289,10 +301,6 @@ impl Trainer {
     pub fn learner(&self) -> &Learner {
         &self.learner
     }
-}
-
-fn gone(out: &Path) -> TrainError {
-    TrainError::Session(SessionError::Silent { folder: out.to_owned() })
 }
 
 fn rollout_arguments(plan: &Plan, stream: u64) -> Vec<String> {

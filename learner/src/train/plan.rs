@@ -167,6 +167,21 @@ impl Plan {
                 return refuse(key, &count, "1..=1000000");
             }
         }
+        let RewardWeights { progress, horizon, collision, arrival, variance, baseline, per_metre } = self.reward;
+        let weights = [
+            ("reward.progress", progress),
+            ("reward.horizon", horizon),
+            ("reward.collision", collision),
+            ("reward.arrival", arrival),
+            ("reward.variance", variance),
+            ("reward.baseline", baseline),
+            ("reward.per_metre", per_metre),
+        ];
+        for (key, weight) in weights {
+            if !weight.is_finite() {
+                return refuse(key, &weight, "any finite number");
+            }
+        }
         Ok(self.settings.validate()?)
     }
 
@@ -211,6 +226,7 @@ mod tests {
         assert!(message("round_episodes=0").contains("round_episodes = 0 is not allowed; 1..=1000000"));
         assert!(message("nothing=1").contains("nothing"), "{}", message("nothing=1"));
         assert!(message("reward.nothing=1").contains("nothing"));
+        assert!(message("reward.variance=nan").contains("reward.variance = NaN is not allowed; any finite number"));
         assert!(message("rewart.variance=1").contains("there is no section `rewart`"));
         assert!(message("seed").contains("KEY=VALUE") || message("seed").contains("seed"));
     }

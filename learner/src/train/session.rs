@@ -15,8 +15,10 @@ use std::time::{Duration, Instant};
 const PROGRAM: &str = "coordinator";
 /// How often a waiting trainer looks whether it was asked to stop.
 const LOOK_AROUND: Duration = Duration::from_millis(50);
-/// How long a round may take: rounds are seconds, a hanging session is not.
+/// How long a round may take, and how much longer with every episode of it: the coordinator ends by itself
+/// when a robot hangs, this is for a coordinator that does.
 const PATIENCE: Duration = Duration::from_secs(600);
+const EPISODE_PATIENCE: Duration = Duration::from_secs(30);
 /// How long a session may take to end.
 const GRACE: Duration = Duration::from_secs(5);
 
@@ -43,10 +45,12 @@ pub enum SessionError {
         said: String,
     },
     /// It hangs.
-    #[error("the rollouts in {} gave no answer for {} s; see the logs there", folder.display(), PATIENCE.as_secs())]
+    #[error("the rollouts in {} gave no answer for {seconds} s; see the logs there", folder.display())]
     Silent {
         /// The session's folder.
         folder: PathBuf,
+        /// How long somebody waited.
+        seconds: u64,
     },
     /// It answers what nobody understands.
     #[error("the rollouts in {} answered `{line}`: {reason}; are coordinator and learner of one version?", folder.display())]
@@ -102,6 +106,8 @@ pub struct Session {
     orders: Option<ChildStdin>,
     answers: Receiver<String>,
     folder: PathBuf,
+    /// How long the ordered round may take.
+    patience: Duration,
 }
 
 impl Session {
@@ -139,12 +145,14 @@ impl Session {
                 }
             });
         }
-        Ok(Self { child, orders, answers, folder: folder.to_owned() })
+        Ok(Self { child, orders, answers, folder: folder.to_owned(), patience: PATIENCE })
     }
 
     /// Orders `episodes` episodes as round `number`; with `policy`, the SHA-256 of an actor, once it acts.
     pub fn order(&mut self, number: u64, episodes: u64, policy: Option<&str>) -> Result<(), SessionError> {
         let line = format!("{number} {episodes} {}\n", policy.unwrap_or_default());
+        let episodes = u32::try_from(episodes).unwrap_or(u32::MAX);
+        self.patience = PATIENCE.saturating_add(EPISODE_PATIENCE.saturating_mul(episodes));
         match self.orders.as_mut().map(|orders| orders.write_all(line.as_bytes()).and_then(|()| orders.flush())) {
             Some(Ok(())) => Ok(()),
             _ => Err(self.ended()),
@@ -153,25 +161,45 @@ impl Session {
 
     /// Waits for the round that was ordered; `None`: somebody asked to stop.
     pub fn answer(&mut self, stop: &StopFlag) -> Result<Option<Round>, SessionError> {
-        let deadline = Instant::now() + PATIENCE;
-        loop {
-            match self.answers.recv_timeout(LOOK_AROUND) {
-                Ok(line) => {
-                    let round = serde_json::from_str(&line).map_err(|error| SessionError::Strange {
-                        folder: self.folder.clone(),
-                        reason: error.to_string(),
-                        line: line.clone(),
-                    })?;
-                    return Ok(Some(round));
-                }
-                Err(RecvTimeoutError::Disconnected) => return Err(self.ended()),
-                Err(RecvTimeoutError::Timeout) if stop.is_set() => return Ok(None),
-                Err(RecvTimeoutError::Timeout) if Instant::now() > deadline => {
-                    return Err(SessionError::Silent { folder: self.folder.clone() });
-                }
-                Err(RecvTimeoutError::Timeout) => {}
+        let begun = Instant::now();
+        while !stop.is_set() {
+            if let Some(round) = self.look()? {
+                return Ok(Some(round));
             }
+            self.in_time(begun)?;
         }
+        Ok(None)
+    }
+
+    /// Waits for the round that was ordered, whoever asks to stop.
+    pub fn whole_answer(&mut self) -> Result<Round, SessionError> {
+        let begun = Instant::now();
+        loop {
+            if let Some(round) = self.look()? {
+                return Ok(round);
+            }
+            self.in_time(begun)?;
+        }
+    }
+
+    /// Looks a little while for an answer.
+    fn look(&mut self) -> Result<Option<Round>, SessionError> {
+        match self.answers.recv_timeout(LOOK_AROUND) {
+            Ok(line) => match serde_json::from_str(&line) {
+                Ok(round) => Ok(Some(round)),
+                Err(error) => {
+                    let (folder, reason) = (self.folder.clone(), error.to_string());
+                    Err(SessionError::Strange { folder, line, reason })
+                }
+            },
+            Err(RecvTimeoutError::Disconnected) => Err(self.ended()),
+            Err(RecvTimeoutError::Timeout) => Ok(None),
+        }
+    }
+
+    fn in_time(&self, begun: Instant) -> Result<(), SessionError> {
+        let (folder, seconds) = (self.folder.clone(), self.patience.as_secs());
+        if begun.elapsed() > self.patience { Err(SessionError::Silent { folder, seconds }) } else { Ok(()) }
     }
 
     /// The folder in which its policy server keeps the versions it was given.

@@ -5,7 +5,7 @@ use super::score::Score;
 use crate::Learner;
 use crate::checkpoint::CheckpointError;
 use serde::{Deserialize, Serialize};
-use std::fs;
+use std::fs::{self, File, TryLockError};
 use std::path::{Path, PathBuf};
 
 /// The plan's file in the folder of a training.
@@ -13,6 +13,7 @@ pub const PLAN_FILE: &str = "train.toml";
 const CHECKPOINTS: &str = "checkpoints";
 const LEARNER_FILE: &str = "learner.safetensors";
 const STATE_FILE: &str = "state.json";
+const LOCK_FILE: &str = ".lock";
 /// Checkpoints that are kept.
 const KEPT: usize = 2;
 
@@ -50,7 +51,7 @@ pub struct Best {
 #[derive(Debug, thiserror::Error)]
 pub enum StateError {
     /// The system refused.
-    #[error("cannot {what} {}: {source}", path.display())]
+    #[error("cannot {what} {} of the training: {source}; is the place writable, and is there space left?", path.display())]
     Io {
         /// What was tried.
         what: &'static str,
@@ -63,8 +64,11 @@ pub enum StateError {
     #[error("{} is not empty: a training is never overwritten; give a new folder with --out, or --resume it", .0.display())]
     NotEmpty(PathBuf),
     /// No checkpoint.
-    #[error("{} holds no checkpoint of a training; begin one with `./run.sh train --out {}`", .0.display(), .0.display())]
+    #[error("{} holds no checkpoint of a training; begin one in a new folder with `./run.sh train --out`", .0.display())]
     None(PathBuf),
+    /// Another process trains there.
+    #[error("{} is being trained in by another process; end that one first, or give another folder with --out", .0.display())]
+    Busy(PathBuf),
     /// A file of the checkpoint.
     #[error("{}: {reason}; remove this checkpoint to resume from the one before", path.display())]
     Malformed {
@@ -86,14 +90,38 @@ fn io(what: &'static str, path: &Path) -> impl FnOnce(std::io::Error) -> StateEr
     move |source| StateError::Io { what, path, source }
 }
 
+/// Keeps other processes from training in a folder, until it is dropped or its process ends in any way.
+#[derive(Debug)]
+pub struct Lock {
+    _file: File,
+}
+
+impl Lock {
+    /// Takes the lock of the training in `out`.
+    pub fn take(out: &Path) -> Result<Self, StateError> {
+        let path = out.join(LOCK_FILE);
+        if !out.is_dir() {
+            return Err(StateError::None(out.to_owned()));
+        }
+        let file = File::create(&path).map_err(io("write", &path))?;
+        match file.try_lock() {
+            Ok(()) => Ok(Self { _file: file }),
+            Err(TryLockError::WouldBlock) => Err(StateError::Busy(out.to_owned())),
+            Err(TryLockError::Error(source)) => Err(io("lock", &path)(source)),
+        }
+    }
+}
+
 /// Makes the folder of a training, which must be new or empty, and writes its plan there.
-pub fn prepare(out: &Path, plan: &Plan) -> Result<(), StateError> {
+pub fn prepare(out: &Path, plan: &Plan) -> Result<Lock, StateError> {
     fs::create_dir_all(out).map_err(io("make", out))?;
     if fs::read_dir(out).map_err(io("list", out))?.next().is_some() {
         return Err(StateError::NotEmpty(out.to_owned()));
     }
+    let lock = Lock::take(out)?;
     let path = out.join(PLAN_FILE);
-    fs::write(&path, plan.to_toml()).map_err(io("write", &path))
+    fs::write(&path, plan.to_toml()).map_err(io("write", &path))?;
+    Ok(lock)
 }
 
 /// How many sessions have been started in `folder`: each has two folders there.
@@ -160,7 +188,7 @@ mod tests {
     fn the_newest_two_checkpoints_stay_and_the_newest_is_read() {
         let place = tempfile::tempdir().unwrap();
         let out = place.path().join("training");
-        prepare(&out, &Plan::default()).unwrap();
+        let lock = prepare(&out, &Plan::default()).unwrap();
         assert!(matches!(prepare(&out, &Plan::default()), Err(StateError::NotEmpty(_))));
         assert!(matches!(load(&out), Err(StateError::None(_))));
         let settings = Settings { hidden: 4, batch: 4, replay_rows: 8, ..Settings::default() };
@@ -171,5 +199,20 @@ mod tests {
         assert_eq!(checkpoints(&out).len(), 2);
         let (plan, _, state) = load(&out).unwrap();
         assert_eq!((plan, state.round, state.owed), (Plan::default(), 20, 0.25));
+        assert!(matches!(Lock::take(&out), Err(StateError::Busy(_))));
+        drop(lock);
+        Lock::take(&out).unwrap();
+    }
+
+    #[test]
+    fn a_checkpoint_that_was_cut_off_is_named() {
+        let place = tempfile::tempdir().unwrap();
+        let message = || load(place.path()).unwrap_err().to_string();
+        assert!(matches!(Lock::take(&place.path().join("none")), Err(StateError::None(_))));
+        let _lock = prepare(place.path(), &Plan::default()).unwrap();
+        let settings = Settings { hidden: 4, batch: 4, replay_rows: 8, ..Settings::default() };
+        save(place.path(), &Learner::new(4, 2, settings, 1), &State::default()).unwrap();
+        fs::write(place.path().join("checkpoints/00000000/state.json"), "{").unwrap();
+        assert!(message().contains("remove this checkpoint to resume from the one before"), "{}", message());
     }
 }

@@ -6,7 +6,9 @@ mod bench;
 mod compared;
 mod killed;
 mod picked_up;
+mod rollouts;
 mod swap;
+mod training;
 
 use shared::policy::contract::Contract;
 use shared::policy::onnx::{ActorGraph, Dense};
@@ -16,25 +18,33 @@ use std::process::Command;
 use std::sync::OnceLock;
 use std::time::SystemTime;
 
-/// Where the policy server is: beside the coordinator, which looks for it there. Built at the first call
-/// when it is missing or older than its sources; `cargo test --workspace` has built it, and building it
-/// again with the features of other packages would take minutes.
+/// Where the policy server is: beside the coordinator, which looks for it there.
 fn policy_server() -> PathBuf {
-    static BUILT: OnceLock<()> = OnceLock::new();
-    let program = tests::program("coordinator").with_file_name("policy-server");
-    BUILT.get_or_init(|| {
-        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-        let sources = newest(&root.join("policy-server/src")).max(newest(&root.join("shared/src")));
-        if std::fs::metadata(&program).and_then(|meta| meta.modified()).is_ok_and(|built| built > sources) {
-            return;
-        }
-        let status = Command::new(env!("CARGO"))
-            .args(["build", "--release", "--bins", "-p", "policy-server"])
-            .current_dir(root)
-            .status()
-            .expect("cargo is there");
-        assert!(status.success(), "the policy server does not build");
-    });
+    static BUILT: OnceLock<PathBuf> = OnceLock::new();
+    BUILT.get_or_init(|| alone("policy-server")).clone()
+}
+
+/// Where the learner is: beside the coordinator, for which it looks there.
+fn learner() -> PathBuf {
+    static BUILT: OnceLock<PathBuf> = OnceLock::new();
+    BUILT.get_or_init(|| alone("learner")).clone()
+}
+
+/// The program of `package`, built when it is missing or older than its sources; `cargo test --workspace` has
+/// built it, and building it again with the features of other packages would take minutes.
+fn alone(package: &str) -> PathBuf {
+    let program = tests::program("coordinator").with_file_name(package);
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let sources = newest(&root.join(package).join("src")).max(newest(&root.join("shared/src")));
+    if std::fs::metadata(&program).and_then(|meta| meta.modified()).is_ok_and(|built| built > sources) {
+        return program;
+    }
+    let status = Command::new(env!("CARGO"))
+        .args(["build", "--release", "--bins", "-p", package])
+        .current_dir(root)
+        .status()
+        .expect("cargo is there");
+    assert!(status.success(), "{package} does not build");
     program
 }
 
