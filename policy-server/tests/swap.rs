@@ -10,7 +10,6 @@ use policy_server::hot_swap::{Event, HotSwap, Loaded, Order};
 use policy_server::loader::{Loader, Watched};
 use policy_server::sample::Choice;
 use shared::Position;
-use shared::horizon::Horizon;
 use shared::policy::digest::sha256;
 use shared::policy::folder::{PolicyFolder, Status, Version};
 use shared::policy::onnx::ActorGraph;
