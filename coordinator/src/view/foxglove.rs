@@ -332,7 +332,8 @@ mod tests {
         let mut deaf = connect(&view, PROTOCOL).unwrap();
         (0..4).for_each(|channel| subscribe(&mut deaf, channel as u32, channel));
         let mut other = connect(&view, PROTOCOL).unwrap();
-        (json_of(&mut other), json_of(&mut other));
+        json_of(&mut other);
+        json_of(&mut other);
         subscribe(&mut other, 9, 3);
         // Far more than the system buffers for a socket.
         for tick in 0..400 {
