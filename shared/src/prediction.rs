@@ -38,7 +38,7 @@ impl Prediction {
         Self { horizon, states: all, set_point }
     }
 
-    /// A plan of `horizon` steps whose x^[l] is `state(l)`, l = 0..=N.
+    /// A plan of `horizon` steps whose `x^[l]` is `state(l)`, l = 0..=N.
     pub fn from_fn(horizon: Horizon, state: impl Fn(usize) -> Position, set_point: Position) -> Self {
         let last = horizon.steps();
         Self { horizon, states: std::array::from_fn(|step| state(step.min(last))), set_point }
