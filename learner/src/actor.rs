@@ -4,7 +4,7 @@ use crate::network::{Network, Pass};
 use crate::settings::Settings;
 use crate::squashed::LogStdBounds;
 
-/// pi_theta: observation [2N] to mean and log sigma, [N] each. Both heads are one layer of 2N
+/// pi_theta: observation `[2N]` to mean and log sigma, `[N]` each. Both heads are one layer of 2N
 /// outputs, means first: one product instead of two.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Actor {
@@ -55,7 +55,7 @@ impl Actor {
         self.network.outputs() / 2
     }
 
-    /// Mean and clipped log sigma, [N] each, for one observation as the network takes it (scaled).
+    /// Mean and clipped log sigma, `[N]` each, for one observation as the network takes it (scaled).
     pub fn answer(&self, observation: &[f32]) -> (Vec<f32>, Vec<f32>) {
         let mut pass = Pass::new(&self.network, 1);
         pass.input_mut().copy_from_slice(observation);

@@ -29,7 +29,7 @@ pub struct Critic {
     action_gradient: Vec<f32>,
 }
 
-/// States and actions of a batch, [batch, 2N] and [batch, N].
+/// States and actions of a batch, `[batch, 2N]` and `[batch, N]`.
 #[derive(Clone, Copy, Debug)]
 pub struct Pairs<'a> {
     /// s.
@@ -104,7 +104,7 @@ impl Critics {
         })
     }
 
-    /// min over the two TARGET critics of Q'(s, a), into `smaller` [batch].
+    /// min over the two TARGET critics of Q'(s, a), into `smaller` `[batch]`.
     pub fn target_minimum(&mut self, pairs: Pairs, smaller: &mut [f32]) {
         self.both(|critic| {
             critic.set_input(pairs);
@@ -116,7 +116,7 @@ impl Critics {
         }
     }
 
-    /// One step of both critics towards `target` y [batch], down L = mean of (Q(s, a) - y)^2 each.
+    /// One step of both critics towards `target` y `[batch]`, down L = mean of (Q(s, a) - y)^2 each.
     /// Returns the mean of both losses and the mean of all Q.
     pub fn learn(&mut self, pairs: Pairs, target: &[f32], settings: &Settings) -> (f64, f64) {
         let [first, second] = self.both(|critic| critic.learn(pairs, target, settings));
@@ -124,8 +124,8 @@ impl Critics {
         ((first.0 + second.0) / rows, (first.1 + second.1) / rows)
     }
 
-    /// min over the two critics of Q(s, a) into `smaller` [batch], and `weight` times its gradient
-    /// with respect to the actions into `gradient` [batch, N]. The critics learn nothing from it.
+    /// min over the two critics of Q(s, a) into `smaller` `[batch]`, and `weight` times its gradient
+    /// with respect to the actions into `gradient` `[batch, N]`. The critics learn nothing from it.
     pub fn minimum(&mut self, pairs: Pairs, weight: f32, smaller: &mut [f32], gradient: &mut [f32]) {
         self.both(|critic| {
             critic.set_input(pairs);

@@ -59,7 +59,7 @@ fn first_gradient(adam: &Adam) -> Vec<f64> {
     adam.first.iter().map(|m| f64::from(*m) * 10.0).collect()
 }
 
-/// Rows of [count, width] numbers.
+/// Rows of `[count, width]` numbers.
 fn rows(numbers: &[f32], width: usize) -> Vec<Vec<f64>> {
     numbers.chunks_exact(width).map(wide).collect()
 }

@@ -1,7 +1,7 @@
 //! The three matrix products of a fully connected layer: the only file that imports `faer`.
 //!
-//! Matrices are row-major slices as in PyTorch and ONNX: a batch is [rows, features], a weight
-//! [outputs, inputs]. So weights go to files as they are, and nothing is ever transposed in memory:
+//! Matrices are row-major slices as in PyTorch and ONNX: a batch is `[rows, features]`, a weight
+//! `[outputs, inputs]`. So weights go to files as they are, and nothing is ever transposed in memory:
 //! faer's kernels take any strides (on AVX-512 both orders of a weight ran equally fast, README). One
 //! product runs on one thread: two critics side by side use two cores better, and to the same bits.
 
@@ -17,22 +17,22 @@ fn matrix_mut(numbers: &mut [f32], rows: usize) -> MatMut<'_, f32> {
     MatMut::from_row_major_slice_mut(numbers, rows, columns)
 }
 
-/// Y = X Wᵀ: `input` X [batch, inputs], `weight` W [outputs, inputs], `output` Y [batch, outputs].
+/// Y = X Wᵀ: `input` X `[batch, inputs]`, `weight` W `[outputs, inputs]`, `output` Y `[batch, outputs]`.
 pub fn forward(input: &[f32], weight: &[f32], output: &mut [f32], batch: usize) {
     let outputs = output.len() / batch;
     let (x, w) = (matrix(input, batch), matrix(weight, outputs));
     matmul(matrix_mut(output, batch), Accum::Replace, x, w.transpose(), 1.0, Par::Seq);
 }
 
-/// dL/dW = Dᵀ X: `delta` D = dL/dY [batch, outputs], `input` X [batch, inputs], `gradient` [outputs, inputs].
+/// dL/dW = Dᵀ X: `delta` D = dL/dY `[batch, outputs]`, `input` X `[batch, inputs]`, `gradient` `[outputs, inputs]`.
 pub fn weight_gradient(delta: &[f32], input: &[f32], gradient: &mut [f32], batch: usize) {
     let outputs = delta.len() / batch;
     let (d, x) = (matrix(delta, batch), matrix(input, batch));
     matmul(matrix_mut(gradient, outputs), Accum::Replace, d.transpose(), x, 1.0, Par::Seq);
 }
 
-/// dL/dX = D W for the last inputs only, as many as `gradient` [batch, some] has columns: `delta` D
-/// [batch, outputs], `weight` W [outputs, inputs]. A critic's actions are its last inputs.
+/// dL/dX = D W for the last inputs only, as many as `gradient` `[batch, some]` has columns: `delta` D
+/// `[batch, outputs]`, `weight` W `[outputs, inputs]`. A critic's actions are its last inputs.
 pub fn input_gradient(delta: &[f32], weight: &[f32], gradient: &mut [f32], batch: usize) {
     let columns = gradient.len() / batch;
     let (d, w) = (matrix(delta, batch), matrix(weight, delta.len() / batch));

@@ -1,7 +1,7 @@
 //! A multilayer perceptron with ReLU between its layers: forward pass, and backward pass by hand.
 //!
-//! All parameters of a network stand in one slice, layer by layer: weight [outputs, inputs] row-major,
-//! then bias [outputs]. Gradients, Adam's moments and target networks have the same layout, so that
+//! All parameters of a network stand in one slice, layer by layer: weight `[outputs, inputs]` row-major,
+//! then bias `[outputs]`. Gradients, Adam's moments and target networks have the same layout, so that
 //! each is one loop.
 
 use crate::matmul;
@@ -42,7 +42,7 @@ fn layout(widths: &[usize]) -> (Vec<Layer>, usize) {
 #[derive(Clone, Debug)]
 pub struct Pass {
     batch: usize,
-    /// `values[0]` is the input, `values[l]` the output of layer l, [batch, width] each.
+    /// `values[0]` is the input, `values[l]` the output of layer l, `[batch, width]` each.
     values: Vec<Vec<f32>>,
     /// dL/d(values[l + 1] before the ReLU).
     deltas: Vec<Vec<f32>>,
@@ -79,7 +79,7 @@ impl Network {
         self.layers.last().map_or(0, |layer| layer.outputs)
     }
 
-    /// All parameters, layer by layer: weight [outputs, inputs], bias.
+    /// All parameters, layer by layer: weight `[outputs, inputs]`, bias.
     pub fn parameters(&self) -> &[f32] {
         &self.parameters
     }
@@ -89,7 +89,7 @@ impl Network {
         &mut self.parameters
     }
 
-    /// Weight [outputs, inputs] and bias of each layer.
+    /// Weight `[outputs, inputs]` and bias of each layer.
     pub fn layers(&self) -> impl Iterator<Item = (&[f32], &[f32])> {
         let part = |range: &Range<usize>| &self.parameters[range.clone()];
         self.layers.iter().map(move |layer| (part(&layer.weight), part(&layer.bias)))
@@ -117,7 +117,7 @@ impl Network {
     }
 
     /// Goes back from dL/d(output) in `pass.output_gradient_mut()`: all of `gradient` (dL/d(parameters))
-    /// is written when it is asked for, and so is `input_gradient`, dL/dx of the last inputs, [batch, some].
+    /// is written when it is asked for, and so is `input_gradient`, dL/dx of the last inputs, `[batch, some]`.
     pub fn backward(&self, pass: &mut Pass, mut gradient: Option<&mut [f32]>, input_gradient: Option<&mut [f32]>) {
         let batch = pass.batch;
         for (l, layer) in self.layers.iter().enumerate().rev() {
@@ -164,17 +164,17 @@ impl Pass {
         self.batch
     }
 
-    /// x, [batch, inputs].
+    /// x, `[batch, inputs]`.
     pub fn input_mut(&mut self) -> &mut [f32] {
         &mut self.values[0]
     }
 
-    /// y, [batch, outputs].
+    /// y, `[batch, outputs]`.
     pub fn output(&self) -> &[f32] {
         self.values.last().map_or(&[], Vec::as_slice)
     }
 
-    /// dL/dy, [batch, outputs], to be written before the backward pass.
+    /// dL/dy, `[batch, outputs]`, to be written before the backward pass.
     pub fn output_gradient_mut(&mut self) -> &mut [f32] {
         self.deltas.last_mut().map_or(&mut [], Vec::as_mut_slice)
     }

@@ -6,15 +6,15 @@ use shared::random;
 /// One transition, from (s, a) to s'.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Transition<'a> {
-    /// s, scaled as the actor's contract says, [2N].
+    /// s, scaled as the actor's contract says, `[2N]`.
     pub observation: &'a [f32],
-    /// a, the raw tanh value in [-1, 1], [N].
+    /// a, the raw tanh value in [-1, 1], `[N]`.
     pub action: &'a [f32],
     /// R, unscaled.
     pub reward: f32,
     /// The episode ended here by itself (a collision): nothing follows s'. A time limit is no end.
     pub terminated: bool,
-    /// s', [2N].
+    /// s', `[2N]`.
     pub next_observation: &'a [f32],
 }
 
@@ -43,15 +43,15 @@ const NOWHERE: u32 = u32::MAX;
 /// Rows drawn from a buffer, by column.
 #[derive(Clone, Debug)]
 pub struct Batch {
-    /// s, [batch, 2N].
+    /// s, `[batch, 2N]`.
     pub observation: Vec<f32>,
-    /// a, [batch, N].
+    /// a, `[batch, N]`.
     pub action: Vec<f32>,
-    /// R, unscaled, [batch].
+    /// R, unscaled, `[batch]`.
     pub reward: Vec<f32>,
-    /// Whether nothing follows s', [batch].
+    /// Whether nothing follows s', `[batch]`.
     pub terminated: Vec<bool>,
-    /// s', [batch, 2N].
+    /// s', `[batch, 2N]`.
     pub next_observation: Vec<f32>,
 }
 

@@ -39,15 +39,15 @@ pub fn log_slope(u: f32) -> f32 {
 #[derive(Clone, Debug)]
 pub struct Sample {
     actions: usize,
-    /// eps, [batch, N]; drawn or set before [`Sample::squash`].
+    /// eps, `[batch, N]`; drawn or set before [`Sample::squash`].
     pub noise: Vec<f32>,
-    /// a = tanh(u), [batch, N].
+    /// a = tanh(u), `[batch, N]`.
     pub action: Vec<f32>,
-    /// log pi(a|s), [batch].
+    /// log pi(a|s), `[batch]`.
     pub log_probability: Vec<f32>,
-    /// sigma eps where the bounds do not cut, otherwise 0, [batch, N].
+    /// sigma eps where the bounds do not cut, otherwise 0, `[batch, N]`.
     slope: Vec<f32>,
-    /// 1 where the bounds do not cut, otherwise 0, [batch, N].
+    /// 1 where the bounds do not cut, otherwise 0, `[batch, N]`.
     inside: Vec<f32>,
 }
 
@@ -70,7 +70,7 @@ impl Sample {
         }
     }
 
-    /// Actions and their log-probabilities from the actor's `output` [batch, 2N]: N means, N log sigmas.
+    /// Actions and their log-probabilities from the actor's `output` `[batch, 2N]`: N means, N log sigmas.
     pub fn squash(&mut self, output: &[f32], bounds: LogStdBounds) {
         let half_log_tau = 0.5 * std::f32::consts::TAU.ln();
         let n = self.actions;
@@ -92,8 +92,8 @@ impl Sample {
         }
     }
 
-    /// dL/d(output) [batch, 2N] of L = sum over rows of (weight log pi(a|s)) + F(a), given
-    /// `action_gradient` = dF/da [batch, N]. eps does not depend on the actor (reparameterisation).
+    /// dL/d(output) `[batch, 2N]` of L = sum over rows of (weight log pi(a|s)) + F(a), given
+    /// `action_gradient` = dF/da `[batch, N]`. eps does not depend on the actor (reparameterisation).
     pub fn backward(&self, weight: f32, action_gradient: &[f32], output_gradient: &mut [f32]) {
         let n = self.actions;
         for (row, gradient) in output_gradient.chunks_exact_mut(2 * n).enumerate() {

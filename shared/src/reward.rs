@@ -1,6 +1,6 @@
 //! The reward R of the paper's section IV, term by term.
 //!
-//! R = sum over robots of (R_p - R_h - R_c + R_term) - R_v, once per tick. A tick leads from x[k-1] to
+//! R = sum over robots of (R_p - R_h - R_c + R_term) - R_v, once per tick. A tick leads from `x[k-1]` to
 //! `x[k]` with the horizons N^{k-1}; De is how much nearer the set-point it brought the robot. The paper
 //! prints the label of R_p twice; the second one is R_c.
 
