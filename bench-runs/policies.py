@@ -47,11 +47,12 @@ def rows(name):
         start = "as it is" if float(jitter) == 0 else f"moved by {jitter} m"
         grid, fixed = best(by_name, GRID), best(by_name, everything)
         constants = cell(by_name["constants"]) if "constants" in by_name else "-"
-        yield [f"`{name}`", start, cell(by_name["policy"]), f"{cell(by_name[grid])}, N={grid[6:]}",
+        yield [f"`{name}`", start, cell(by_name["policy"]), cell(by_name["fixed:20"]),
+               f"{cell(by_name[grid])}, N={grid[6:]}",
                f"{cell(by_name[fixed])}, N={fixed[6:]}", cell(by_name["random"]), constants]
 
 
-head = ["policy", "start", "policy", "best fixed of the grid", "best fixed of 49", "random", "constants, searched"]
+head = ["policy", "start", "policy", "fixed 20", "best fixed of the grid", "best fixed of 49", "random", "constants, searched"]
 lines = ["| " + " | ".join(head) + " |", "|---" * len(head) + "|"]
 for name in NAMES:
     if (DATA / f"{name}.csv").exists():
