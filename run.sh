@@ -33,7 +33,7 @@ esac
 # By itself, so that its dependencies have the same features (and are built once) in every command.
 server=
 case " $* " in
-*" --policy "* | *" --policy="* | *policy:*) server=policy-server ;;
+*" --policy "* | *" --policy="* | *policy:* | " figures "*) server=policy-server ;;
 " figures "*) for name in two_setpoint four_gate ex14_d; do [ ! -d "policies/$name" ] || server=policy-server; done ;;
 esac
 case " $* " in

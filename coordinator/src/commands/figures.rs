@@ -13,7 +13,7 @@ Example:
   ./run.sh figures
 Runs the paper's tasks in this process (two, four and fourteen robots) and writes one SVG per figure. Each file names
 the command that repeats its run in its description. Variable horizons are those of policies/two_setpoint,
-policies/four_gate and policies/ex14_d where these folders are there, otherwise the best of twenty random runs.")]
+policies/four_gate and policies/exchange_14 where these folders are there, otherwise the best of twenty random runs.")]
 pub struct Args {
     /// Folder of the figures; what is there is written over
     #[arg(long, value_name = "DIR", default_value = "figures")]

@@ -32,7 +32,7 @@ Examples:
   ./run.sh 4 --scenario four_gate --horizon random:3
   ./run.sh 2 --profile paper --horizon fixed:9,40
   ./run.sh 8 --scenario my_layout.toml --set vodca.rows=each --out my_run
-  ./run.sh 14 --policy policies/ex14_d
+  ./run.sh 14 --policy policies/exchange_14
   ./run.sh 14 --horizon script:runs/20260131-120000-ex14_d-14/horizons.csv
 Without --scenario: 2 two_setpoint, 4 four_gate, 14 ex14_d, otherwise a ring.
 Exit codes: 0 arrived, or asked to stop; 1 not arrived or collided; 2 wrong usage; 3 a robot's process was lost.")]

@@ -12,7 +12,7 @@ use shared::stop::StopFlag;
 use std::error::Error;
 use std::path::Path;
 
-/// Where policies lie that were trained for the figures, one folder per scenario.
+/// Where policies lie.
 const POLICIES: &str = "policies";
 
 /// What a figure runs.
@@ -21,6 +21,8 @@ pub(super) struct Setting {
     pub(super) scenario: &'static str,
     pub(super) profile: Profile,
     pub(super) set: Option<&'static str>,
+    /// Folder in `policies` of the policy that was trained for it.
+    pub(super) policy: Option<&'static str>,
 }
 
 /// A run, tick by tick.
@@ -43,21 +45,19 @@ impl Setting {
         Ok(Film { horizon: horizon.into(), scenario, params, ticks, summary })
     }
 
-    /// The run with variable horizons: those of the policy in `policies/SCENARIO` where there is one, otherwise
+    /// The run with variable horizons: those of its policy where that is there, otherwise
     /// [`Setting::best_random`].
     pub(super) fn variable(&self, seeds: u64) -> Result<Film, Box<dyn Error + Send + Sync>> {
-        let folder = format!("{POLICIES}/{}", self.scenario);
-        if !Path::new(&folder).is_dir() {
-            return self.best_random(seeds);
-        }
+        let there = |name: &&str| Path::new(POLICIES).join(name).is_dir();
+        let Some(name) = self.policy.filter(there) else { return self.best_random(seeds) };
         let (scenario, params) = self.set_up()?;
-        let mut client = PolicyClient::start(&FoundPolicy::find(&folder)?, &scenario, &params, &StopFlag::default())?;
+        let mut client = PolicyClient::start(&FoundPolicy::find(name)?, &scenario, &params, &StopFlag::default())?;
         let mut ticks = Vec::new();
         let metrics = run_with_policy(&scenario, &params, &mut client, |_, steps| {
             ticks.push(steps.to_vec());
             Ok::<(), ClientError>(())
         })?;
-        Ok(Film { horizon: format!("policy:{}", self.scenario), scenario, params, ticks, summary: metrics.finish() })
+        Ok(Film { horizon: format!("policy:{name}"), scenario, params, ticks, summary: metrics.finish() })
     }
 
     fn set_up(&self) -> Result<(Scenario, Params), SetupError> {

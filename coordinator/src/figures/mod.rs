@@ -1,7 +1,7 @@
 //! The figures of the paper's results section and of the README, run and drawn anew.
 //!
-//! VH is the run with variable horizons: of the policy in `policies/SCENARIO` (`two_setpoint`, `four_gate`,
-//! `ex14_d`) where that folder is there, as in the paper; otherwise the best of twenty runs with random
+//! VH is the run with variable horizons: of the policy in `policies` (`two_setpoint`, `four_gate`,
+//! `exchange_14`) where that folder is there, as in the paper; otherwise the best of twenty runs with random
 //! horizons, the same controller without training.
 
 mod film;
@@ -22,10 +22,16 @@ const SEEDS: u64 = 20;
 /// The fixed horizons of the paper's bars.
 const HORIZONS: [u64; 10] = [5, 10, 15, 20, 25, 30, 35, 40, 45, 49];
 
-const TWO: Setting = Setting { scenario: "two_setpoint", profile: Profile::Paper, set: Some("vodca.infeasible=hold") };
-const FOUR: Setting = Setting { scenario: "four_gate", profile: Profile::Paper, set: None };
-const FOURTEEN: Setting = Setting { scenario: "ex14_d", profile: Profile::Paper, set: Some("vodca.rows=each") };
-const SAFE: Setting = Setting { scenario: "ex14_d", profile: Profile::Safe, set: None };
+const TWO: Setting = Setting {
+    scenario: "two_setpoint",
+    profile: Profile::Paper,
+    set: Some("vodca.infeasible=hold"),
+    policy: Some("two_setpoint"),
+};
+const FOUR: Setting = Setting { scenario: "four_gate", profile: Profile::Paper, set: None, policy: Some("four_gate") };
+const FOURTEEN: Setting =
+    Setting { scenario: "ex14_d", profile: Profile::Paper, set: Some("vodca.rows=each"), policy: Some("exchange_14") };
+const SAFE: Setting = Setting { scenario: "ex14_d", profile: Profile::Safe, set: None, policy: None };
 
 /// Runs and draws all of them. Everything but computation times is the same on every repetition.
 pub fn all(mut done: impl FnMut(&str)) -> Result<Vec<Figure>, Failed> {
