@@ -52,6 +52,9 @@ fn survive_a_kill_at(tick: usize) {
     let mut run = Run::start(Robots::Real, &arguments);
     wait_until("the tick of the kill", || acted(&run.folder).len() >= tick.max(1));
     tests::signal(server_of(&run.folder), "KILL");
+    // A quick successor would be there before the next question: nobody would have missed the dead one.
+    let bridged = || acted(&run.folder).last().is_some_and(|[source, ..]| source != "policy");
+    wait_until("its absence is bridged", bridged);
     let mut successor = restart(&run.folder);
     run.wait();
     wait_until("the successor ends with the run", || successor.try_wait().unwrap().is_some());
