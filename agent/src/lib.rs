@@ -8,6 +8,7 @@ pub mod layout;
 pub mod mpc;
 pub mod reference;
 pub mod robot;
+pub mod route;
 pub mod run;
 pub mod safety;
 pub mod team;

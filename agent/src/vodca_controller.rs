@@ -6,6 +6,7 @@ use crate::mpc::cross_check::Comparison;
 use crate::mpc::ladder::Ladder;
 use crate::mpc::problem::{Plan, Problem, Row, SlackPrice, SolveError, Target};
 use crate::reference;
+use crate::route::Route;
 use crate::safety::cell::{Cell, Present};
 use crate::safety::last_check::{TOLERANCE, is_answer, nearest_safe};
 use crate::vodca::memory::ConflictMemory;
@@ -90,9 +91,15 @@ impl VodcaController {
         traffic::traffic(aim, meetings)
     }
 
+    /// The set-point, or in a lasting conflict where the shortest way round the obstacles leads.
+    fn way_on(&self, from: Position) -> Position {
+        let round = self.params.route.after < 1.0 && self.memory.lasting >= self.params.route.after;
+        if round { self.layout.routes[self.robot].aim(from) } else { self.layout.set_points[self.robot] }
+    }
+
     /// Rule 1: the reference, aimed by rule 4.
     fn aim(&mut self, view: &View<'_>) {
-        let set_point = self.layout.set_points[self.robot];
+        let set_point = self.way_on(view.position);
         match self.params.mpc.reference {
             Reference::SetPoint => reference::set_point(&mut self.target, set_point, view.horizon),
             Reference::Straight => {
@@ -241,7 +248,7 @@ pub fn hazards<'a>(
     let others = view.neighbours.iter().enumerate().filter(move |(other, _)| *other != robot);
     let neighbours = others.filter_map(move |(other, neighbour)| {
         let separation = owed(layout.robot_extra[other]);
-        if let Some(wish) = wish_to_let_pass(params, layout.set_points[robot], view.position, neighbour) {
+        if let Some(wish) = wish_to_let_pass(params, layout.set_points[robot], view.position, neighbour, &layout.routes[other]) {
             return Some(Hazard { course: wish, separation: separation + params.give_way.clearance });
         }
         let (tick, plan) = neighbour.plan.as_ref()?;
@@ -262,6 +269,7 @@ fn wish_to_let_pass<'a>(
     own_set_point: Position,
     own: Position,
     neighbour: &Neighbour,
+    route: &Route,
 ) -> Option<Course<'a>> {
     let own_way = (own_set_point - own).norm();
     if own_way >= params.give_way.radius {
@@ -269,9 +277,9 @@ fn wish_to_let_pass<'a>(
     }
     let (_, present) = neighbour.present?;
     let stride = params.model.sample_time * params.model.max_speed;
-    ((neighbour.set_point - present).norm() > own_way).then_some(Course::Wish {
-        from: present,
-        to: neighbour.set_point,
-        stride,
-    })
+    if (neighbour.set_point - present).norm() <= own_way {
+        return None;
+    }
+    let to = if params.route.after < 1.0 { route.aim(present) } else { neighbour.set_point };
+    Some(Course::Wish { from: present, to, stride })
 }

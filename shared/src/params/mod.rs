@@ -28,6 +28,8 @@ pub struct Params {
     pub vodca: Vodca,
     /// Aim to the right while in conflict (safe.md, rule 4).
     pub aim: Aim,
+    /// Ways round the obstacles.
+    pub route: RouteParams,
     /// Give way to robots that still travel (safe.md, rule 3).
     pub give_way: GiveWay,
     /// Hard cell rows on the first step (safe.md, rule 5).
@@ -244,6 +246,15 @@ pub struct Aim {
     pub traffic: f64,
     /// The largest turn in traffic, as a multiple of `angle`.
     pub most: f64,
+}
+
+/// Ways round the obstacles.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RouteParams {
+    /// How lasting a conflict has to be (0..=1) for a robot to walk the shortest way round the obstacles;
+    /// 1 switches the rule off.
+    pub after: f64,
 }
 
 /// Give way to robots that still travel (safe.md, rule 3).

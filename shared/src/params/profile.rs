@@ -78,6 +78,7 @@ impl Params {
                 traffic: 0.0,
                 most: 1.0,
             },
+            route: RouteParams { after: 1.0 },
             give_way: GiveWay { radius: 0.0, clearance: 0.1 },
             cell: Cell { enabled: false, separation: 1.5, escape: 0.0, noise_bound: 0.0 },
             horizon: HorizonParams { jitter: 0 },
@@ -117,6 +118,7 @@ impl Params {
             most: 2.5,
         };
         params.horizon.jitter = 3;
+        params.route.after = 0.8;
         params.give_way.radius = 1.2;
         params.cell.enabled = true;
         params

@@ -135,6 +135,7 @@ pub const ENTRIES: &[Entry] = &[
     entry("aim.near", "step", Whole(0, 1000), "ours", "meetings within this many steps do not count as traffic; 0 counts all, and crowds grow"),
     entry("aim.traffic", "-", Between(0.0, 10.0), "ours", "every meeting beyond the first adds this share of aim.angle to the turn; larger: quicker through crowded centres, longer paths in boxes"),
     entry("aim.most", "-", Between(1.0, 10.0), "ours", "largest turn in traffic, as a multiple of aim.angle"),
+    entry("route.after", "-", Between(0.0, 1.0), "ours", "a robot whose conflict has lasted (vodca.lasting_memory) walks the shortest way round the obstacles from this share on, and whoever gives way expects that of everybody; 1 is off: pockets beside obstacles are never left"),
     entry("give_way.radius", "m", Between(0.0, 1000.0), "safe rule 3: r_y", "robots this near their set-point give way; 0 is off"),
     entry("give_way.clearance", "m", Between(0.0, 100.0), "safe rule 3: c_y", "added to min_separation while giving way"),
     entry("cell.enabled", "-", Switch, "safe rules 5 and 6", "the guarantee of separation; off: only the rows of vodca"),
