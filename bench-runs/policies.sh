@@ -18,10 +18,10 @@ evaluate() { # evaluate NAME ARGUMENTS ...
 }
 for policy; do
     case $policy in
-    two_setpoint) evaluate two_setpoint --scenario two_setpoint --profile paper --jitter-start 0.1 ;;
-    four_gate) evaluate four_gate --scenario four_gate --profile paper --jitter-start 0.1 ;;
-    exchange_14) evaluate exchange_14 --scenario ex14_d --profile paper --set vodca.rows=each --jitter-start 0.05 ;;
-    ring_8) evaluate ring_8 --scenario ring:8 --profile safe --jitter-start 0.5 --generations 10 ;;
+    two_setpoint) evaluate two_setpoint --scenario two_setpoint --profile paper --start-jitter 0.1 ;;
+    four_gate) evaluate four_gate --scenario four_gate --profile paper --start-jitter 0.1 ;;
+    exchange_14) evaluate exchange_14 --scenario ex14_d --profile paper --set vodca.rows=each --start-jitter 0.05 ;;
+    ring_8) evaluate ring_8 --scenario ring:8 --profile safe --start-jitter 0.5 --generations 10 ;;
     *) echo "error: there is no policy \`$policy\`; they are: two_setpoint four_gate exchange_14 ring_8" >&2; exit 2 ;;
     esac
 done

@@ -39,12 +39,11 @@ pub fn straight(target: &mut Target, from: Position, to: Position, horizon: Hori
     }
 }
 
-/// The set-point seen turned to the right while in conflict: g' = p + R(-a)(g - p) with
-/// a = phi s clip((|g - p| - fade_start) / (fade_end - fade_start), 0, 1). `in_conflict` is s, 0..=`aim.most`.
-pub fn aim(aim: &Aim, in_conflict: f64, position: Position, set_point: Position) -> Position {
+/// The set-point seen turned to the right: g' = p + R(-a)(g - p) with a = `turn` (phi s, rad) times
+/// [`Aim::fade`].
+pub fn aim(aim: &Aim, turn: f64, position: Position, set_point: Position) -> Position {
     let way = set_point - position;
-    let fade = ((way.norm() - aim.fade_start) / (aim.fade_end - aim.fade_start)).clamp(0.0, 1.0);
-    let angle = aim.angle * in_conflict * fade;
+    let angle = turn * aim.fade(way.norm());
     if angle == 0.0 { set_point } else { position + turned(way, -angle) }
 }
 
@@ -73,9 +72,9 @@ mod tests {
         let params = Aim { angle: 0.35, fade_start: 1.5, fade_end: 4.5, ..Params::paper().aim };
         let here = Position::zeros();
         let far = Position::new(10.0, 0.0);
-        let turned = aim(&params, 1.0, here, far);
+        let turned = aim(&params, 0.35, here, far);
         assert!((turned - Position::new(10.0 * 0.35f64.cos(), -10.0 * 0.35f64.sin())).norm() < 1e-12);
         assert_eq!(aim(&params, 0.0, here, far), far);
-        assert_eq!(aim(&params, 1.0, here, Position::new(1.5, 0.0)), Position::new(1.5, 0.0));
+        assert_eq!(aim(&params, 0.35, here, Position::new(1.5, 0.0)), Position::new(1.5, 0.0));
     }
 }

@@ -11,7 +11,7 @@ use crate::safety::cell::{Cell, Present};
 use crate::safety::last_check::{TOLERANCE, is_answer, nearest_safe};
 use crate::vodca::memory::ConflictMemory;
 use crate::vodca::rows::collision_rows;
-use crate::vodca::traffic::{self, Walk};
+use crate::vodca::traffic::{Traffic, Walk};
 use crate::vodca::{Course, Hazard};
 use shared::horizon::Horizon;
 use shared::params::{Infeasible, Params, Reference};
@@ -32,6 +32,7 @@ pub struct VodcaController {
     plan: Plan,
     previous: Option<Previous>,
     memory: ConflictMemory,
+    traffic: Traffic,
 }
 
 /// The robot's own plan of tick k - 1.
@@ -43,7 +44,9 @@ struct Previous {
 impl VodcaController {
     /// The controller of `robot`; everything a tick needs is allocated here.
     pub fn new(robot: usize, params: &Params, layout: &Layout) -> Self {
-        let hazards = layout.set_points.len() + layout.obstacles.len();
+        let robots = layout.set_points.len();
+        let hazards = robots + layout.obstacles.len();
+        let stride = params.model.sample_time * params.model.max_speed;
         Self {
             robot,
             params: params.clone(),
@@ -51,10 +54,11 @@ impl VodcaController {
             ladder: Ladder::default(),
             target: reference::empty_target(),
             rows: Vec::with_capacity(2 * hazards),
-            cell: Cell::with_capacity(hazards, params.model.sample_time * params.model.max_speed),
+            cell: Cell::with_capacity(hazards, stride),
             plan: Plan::default(),
             previous: None,
             memory: ConflictMemory::default(),
+            traffic: Traffic::with_capacity(robots, &params.aim, stride),
         }
     }
 
@@ -67,34 +71,38 @@ impl VodcaController {
     fn detect(&mut self, view: &View<'_>) -> usize {
         self.rows.clear();
         let Some(previous) = &self.previous else { return 0 };
-        let hazards = hazards(&self.params, &self.layout, self.robot, view);
+        let hazards = hazards(&self.params, &self.layout, self.robot, &self.memory, view);
         let min_separation = self.params.model.min_separation;
         let vodca = &self.params.vodca;
         let turn = self.memory.turn(vodca);
         collision_rows(vodca, min_separation, turn, &previous.prediction, view.horizon, hazards, &mut self.rows)
     }
 
-    /// Rule 4: the traffic ahead, by where everybody wishes to go. No plan reaches as far at every horizon.
-    fn look_ahead(&self, view: &View<'_>) -> f64 {
-        let Params { model, aim, .. } = &self.params;
-        let own = Walk { from: view.position, to: self.layout.set_points[self.robot] };
-        if aim.look_ahead == 0 || aim.angle == 0.0 || (own.to - own.from).norm() < aim.fade_start {
+    /// Rule 4: the right turn that the traffic ahead asks for, rad.
+    fn look_ahead(&mut self, view: &View<'_>) -> f64 {
+        let Self { params, layout, traffic, robot, .. } = self;
+        let Params { model, aim, .. } = &*params;
+        let own = Walk { from: view.position, to: layout.set_points[*robot] };
+        if aim.look_ahead == 0 || (own.to - own.from).norm() < aim.fade_start {
             return 0.0;
         }
-        let stride = model.sample_time * model.max_speed;
-        let others = view.neighbours.iter().enumerate().filter(|(other, _)| *other != self.robot);
-        let meetings = others.filter_map(|(other, neighbour)| {
-            let walk = Walk { from: neighbour.present?.1, to: neighbour.set_point };
-            let extra = self.layout.robot_extra[self.robot] + self.layout.robot_extra[other];
-            traffic::meeting(own, walk, model.min_separation + extra, stride, aim.look_ahead)
-        });
-        traffic::traffic(aim, meetings)
+        traffic.clear();
+        for (other, neighbour) in view.neighbours.iter().enumerate().filter(|(other, _)| *other != *robot) {
+            if let Some((_, from)) = neighbour.present {
+                let separation = model.min_separation + layout.robot_extra[*robot] + layout.robot_extra[other];
+                traffic.add(Walk { from, to: neighbour.set_point }, separation);
+            }
+        }
+        traffic.turn(own)
     }
 
-    /// The set-point, or in a lasting conflict where the shortest way round the obstacles leads.
+    /// The set-point; without patience where the shortest way round the obstacles leads.
     fn way_on(&self, from: Position) -> Position {
-        let round = self.params.route.after < 1.0 && self.memory.lasting >= self.params.route.after;
-        if round { self.layout.routes[self.robot].aim(from) } else { self.layout.set_points[self.robot] }
+        if self.memory.is_out_of_patience(&self.params.vodca) {
+            self.layout.routes[self.robot].aim(from)
+        } else {
+            self.layout.set_points[self.robot]
+        }
     }
 
     /// Rule 1: the reference, aimed by rule 4.
@@ -103,7 +111,7 @@ impl VodcaController {
         match self.params.mpc.reference {
             Reference::SetPoint => reference::set_point(&mut self.target, set_point, view.horizon),
             Reference::Straight => {
-                let seen = reference::aim(&self.params.aim, self.memory.recent, view.position, set_point);
+                let seen = reference::aim(&self.params.aim, self.memory.aim, view.position, set_point);
                 let model = &self.params.model;
                 let (h, speed) = (model.sample_time, model.max_speed);
                 reference::straight(&mut self.target, view.position, seen, view.horizon, h, speed);
@@ -217,8 +225,8 @@ impl Controller for VodcaController {
     fn tick(&mut self, view: &View<'_>) -> Decision {
         let started = Instant::now();
         let rows = self.detect(view);
-        let traffic = self.look_ahead(view);
-        self.memory.remember(&self.params.aim, &self.params.vodca, rows, traffic);
+        let turn = self.look_ahead(view);
+        self.memory.remember(&self.params.aim, &self.params.vodca, rows, turn);
         self.aim(view);
         self.bound_cell(view);
         let solving = Instant::now();
@@ -242,13 +250,18 @@ pub fn hazards<'a>(
     params: &'a Params,
     layout: &'a Layout,
     robot: usize,
+    memory: &ConflictMemory,
     view: &'a View<'a>,
 ) -> impl Iterator<Item = Hazard<'a>> + Clone {
+    let patient = !memory.is_out_of_patience(&params.vodca);
     let owed = move |extra: f64| params.model.min_separation + layout.robot_extra[robot] + extra;
     let others = view.neighbours.iter().enumerate().filter(move |(other, _)| *other != robot);
     let neighbours = others.filter_map(move |(other, neighbour)| {
         let separation = owed(layout.robot_extra[other]);
-        if let Some(wish) = wish_to_let_pass(params, layout.set_points[robot], view.position, neighbour, &layout.routes[other]) {
+        let way = (layout.set_points[robot] - view.position).norm();
+        let gives_way = way < params.give_way.radius || !patient;
+        let wish = if gives_way { wish_to_let_pass(params, way, neighbour, &layout.routes[other]) } else { None };
+        if let Some(wish) = wish {
             return Some(Hazard { course: wish, separation: separation + params.give_way.clearance });
         }
         let (tick, plan) = neighbour.plan.as_ref()?;
@@ -262,24 +275,12 @@ pub fn hazards<'a>(
     neighbours.chain(obstacles)
 }
 
-/// Rule 3: a robot near its set-point lets those pass that still have farther to go, by keeping away
-/// from where they wish to walk. (A plan that already avoids a parked robot shows no conflict.)
-fn wish_to_let_pass<'a>(
-    params: &Params,
-    own_set_point: Position,
-    own: Position,
-    neighbour: &Neighbour,
-    route: &Route,
-) -> Option<Course<'a>> {
-    let own_way = (own_set_point - own).norm();
-    if own_way >= params.give_way.radius {
-        return None;
-    }
+/// Rule 3: a robot near its set-point, or without patience, lets those pass that still have farther to go
+/// than its own `way` (m), by keeping away from where they wish to walk. (A plan that already avoids a
+/// parked robot shows no conflict.)
+fn wish_to_let_pass<'a>(params: &Params, way: f64, neighbour: &Neighbour, route: &Route) -> Option<Course<'a>> {
     let (_, present) = neighbour.present?;
     let stride = params.model.sample_time * params.model.max_speed;
-    if (neighbour.set_point - present).norm() <= own_way {
-        return None;
-    }
-    let to = if params.route.after < 1.0 { route.aim(present) } else { neighbour.set_point };
-    Some(Course::Wish { from: present, to, stride })
+    let to = if params.vodca.patience < 1.0 { route.aim(present) } else { neighbour.set_point };
+    ((neighbour.set_point - present).norm() > way).then_some(Course::Wish { from: present, to, stride })
 }

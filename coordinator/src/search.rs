@@ -95,17 +95,13 @@ fn cost(summary: &RunSummary) -> f64 {
     1e6 * (1.0 + missing + summary.collisions as f64) + summary.path_cost.min(1e5)
 }
 
-/// One team of horizons: normal draws (Box and Muller), rounded and clipped.
+/// One team of horizons: normal draws, rounded and clipped.
 fn draw(mean: &[f64], spread: &[f64], seed: u64, generation: usize, team: usize) -> Vec<Horizon> {
     let mut generator = random::stream(seed, Use::Search, generation as u64, team as u64);
-    let mut normal = || {
-        let radius = (-2.0 * (1.0 - random::unit(&mut generator)).ln()).sqrt();
-        radius * (std::f64::consts::TAU * random::unit(&mut generator)).cos()
+    let mut horizon = |(mean, spread): (&f64, &f64)| {
+        Horizon::saturating((mean + spread * random::normal(&mut generator)).round() as i64)
     };
-    mean.iter()
-        .zip(spread)
-        .map(|(mean, spread)| Horizon::saturating((mean + spread * normal()).round() as i64))
-        .collect()
+    mean.iter().zip(spread).map(&mut horizon).collect()
 }
 
 #[cfg(test)]

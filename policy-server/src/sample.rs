@@ -18,11 +18,9 @@ pub enum Choice {
     },
 }
 
-/// The standard normal draw of one robot and tick (Box and Muller).
-pub fn normal(seed: u64, robot: usize, tick: u64) -> f64 {
-    let mut generator = random::stream(seed, Use::Policy, robot as u64, tick);
-    let radius = (-2.0 * (1.0 - random::unit(&mut generator)).ln()).sqrt();
-    radius * (std::f64::consts::TAU * random::unit(&mut generator)).cos()
+/// The standard normal draw of one robot and tick.
+fn normal(seed: u64, robot: usize, tick: u64) -> f64 {
+    random::normal(&mut random::stream(seed, Use::Policy, robot as u64, tick))
 }
 
 /// The action of `robot` at `tick` in [-1, 1], and its horizon; `None` when the answer is not finite.
@@ -63,12 +61,14 @@ mod tests {
 
     #[test]
     fn samples_have_the_mean_and_spread_that_the_model_says() {
-        let draws: Vec<f64> = (0..20_000).map(|tick| normal(3, 0, tick)).collect();
+        let contract = Contract::standard(1, true);
+        let answer = Answer { mean: vec![0.5], log_std: vec![0.25f32.ln()] };
+        let sampled = |tick| choose(&contract, &answer, Choice::Sample { seed: 3 }, 0, tick).unwrap().0.atanh();
+        let draws: Vec<f64> = (0..20_000).map(sampled).collect();
         let mean = draws.iter().sum::<f64>() / 20_000.0;
         let variance = draws.iter().map(|draw| (draw - mean).powi(2)).sum::<f64>() / 20_000.0;
-        // Five standard errors: 5 / sqrt(20000) and 5 sqrt(2 / 20000).
-        assert!(mean.abs() < 0.036 && (variance - 1.0).abs() < 0.05, "{mean} {variance}");
-        assert!(draws.iter().any(|draw| *draw > 2.5) && draws.iter().any(|draw| *draw < -2.5));
+        // Five standard errors of a normal draw with spread 0.25.
+        assert!((mean - 0.5).abs() < 0.25 * 0.036 && (variance / 0.0625 - 1.0).abs() < 0.05, "{mean} {variance}");
     }
 
     #[test]

@@ -69,6 +69,12 @@ pub fn unit(generator: &mut impl Rng) -> f64 {
     (generator.next_u64() >> 11) as f64 / (1u64 << 53) as f64
 }
 
+/// A standard normal draw (Box and Muller).
+pub fn normal(generator: &mut impl Rng) -> f64 {
+    let radius = (-2.0 * (1.0 - unit(generator)).ln()).sqrt();
+    radius * (std::f64::consts::TAU * unit(generator)).cos()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -99,5 +105,16 @@ mod tests {
         assert!(draws.iter().all(|u| (0.0..1.0).contains(u)));
         let mean = draws.iter().sum::<f64>() / 1000.0;
         assert!((mean - 0.5).abs() < 0.05, "{mean}");
+    }
+
+    #[test]
+    fn normal_draws_have_mean_0_and_variance_1() {
+        let mut generator = stream(3, Use::Policy, 0, 0);
+        let draws: Vec<f64> = (0..20_000).map(|_| normal(&mut generator)).collect();
+        let mean = draws.iter().sum::<f64>() / 20_000.0;
+        let variance = draws.iter().map(|draw| (draw - mean).powi(2)).sum::<f64>() / 20_000.0;
+        // Five standard errors: 5 / sqrt(20000) and 5 sqrt(2 / 20000).
+        assert!(mean.abs() < 0.036 && (variance - 1.0).abs() < 0.05, "{mean} {variance}");
+        assert!(draws.iter().any(|draw| *draw > 2.5) && draws.iter().any(|draw| *draw < -2.5));
     }
 }

@@ -3,7 +3,6 @@
 //! Rows are transitions in order of episode and tick. In Python:
 //! `safetensors.numpy.load_file("000000.safetensors")["observation"]`.
 
-use crate::random;
 use crate::reward::Terms;
 use crate::tensor_file::{Data, TensorFile, TensorFileError};
 use serde::{Deserialize, Serialize};
@@ -26,7 +25,7 @@ pub struct About {
     pub profile: String,
     /// Where the horizons came from: `policy`, or a horizon source.
     pub horizons: String,
-    /// Seed of episode 0; [`random::episode_seed`] gives the others'.
+    /// Seed of episode 0; [`crate::random::episode_seed`] gives the others'.
     pub seed: u64,
     /// How far starts are moved per axis, m.
     pub start_jitter: f64,
@@ -238,11 +237,6 @@ pub fn shards(folder: &Path) -> Result<Vec<PathBuf>, RolloutError> {
         .collect();
     paths.sort();
     if paths.is_empty() { Err(failed(format!("it has no .{ENDING} file"))) } else { Ok(paths) }
-}
-
-/// Seed of episode `episode` of rollouts with the seed of `about`.
-pub fn seed_of(about: &About, episode: u64) -> u64 {
-    random::episode_seed(about.seed, episode)
 }
 
 #[cfg(test)]

@@ -138,7 +138,7 @@ impl SafeSwitches {
         params.aim.fade_start = self.fade0;
         params.aim.fade_end = self.fade1;
         params.aim.look_ahead = 0;
-        params.route.after = 1.0;
+        params.vodca.patience = 1.0;
         params.give_way.radius = if self.give_way == 1 { self.ry } else { 0.0 };
         params.give_way.clearance = self.ryc;
         params.cell.enabled = self.hard == 1;

@@ -1,8 +1,14 @@
-//! What a robot will meet if everybody walks straight to the set-point: a look ahead that needs no plan.
+//! Traffic ahead: by how much a robot has to keep right so that, if everybody did the same, nobody would meet.
+//!
+//! It looks at where everybody wishes to go, not at plans: a plan shows a conflict only within the shorter of
+//! two horizons, and then a row brakes whom an earlier turn would have led past.
 
-use super::conflict::toward;
+use super::rows::turned;
 use shared::Position;
 use shared::params::Aim;
+
+/// Turns that are tried: 0, and this many up to `aim.most`.
+const TURNS: usize = 12;
 
 /// A straight walk: what a robot wishes to do (safe.md, rule 3).
 #[derive(Clone, Copy, Debug)]
@@ -13,36 +19,98 @@ pub struct Walk {
     pub to: Position,
 }
 
-/// The first of the next `steps` ticks at which two walks are nearer than `separation` (m). `stride` is
-/// the largest move per tick and axis, m.
-///
-/// Nobody covers more than sqrt(2) `stride` a tick, so ticks that a distance rules out are not looked at.
-pub fn meeting(own: Walk, other: Walk, separation: f64, stride: f64, steps: usize) -> Option<usize> {
-    let approach = 2.0 * std::f64::consts::SQRT_2 * stride;
-    let mut step = 1;
-    while step <= steps {
-        let reach = stride * step as f64;
-        let distance = (toward(own.from, own.to, reach) - toward(other.from, other.to, reach)).norm();
-        if distance < separation {
-            return Some(step);
-        }
-        step += (((distance - separation) / approach) as usize).max(1);
-    }
-    None
+/// A walk with what does not depend on the turn.
+#[derive(Clone, Copy, Debug)]
+struct Course {
+    from: Position,
+    way: Position,
+    /// Share of a turn that is left this near to the set-point, 0..=1.
+    fade: f64,
+    /// Length of the walk, ticks; no whole tick: it stands.
+    ticks: f64,
 }
 
-/// How strongly the traffic ahead asks a robot to keep right: 0 when it will meet nobody, 1 when it will, and
-/// `aim.traffic` more for every meeting beyond the first that is more than `aim.near` ticks away, up to
-/// `aim.most`. Meetings at hand do not count as traffic: a crowd gets out of each other's way by its rows, and
-/// walking round it only makes it larger.
-pub fn traffic(aim: &Aim, meetings: impl Iterator<Item = usize>) -> f64 {
-    let (mut any, mut far) = (false, 0);
-    for step in meetings {
-        any = true;
-        far += usize::from(step > aim.near);
+impl Course {
+    /// `stride` is the largest move per tick and axis, m.
+    fn new(aim: &Aim, walk: Walk, stride: f64) -> Self {
+        let way = walk.to - walk.from;
+        Self { from: walk.from, way, fade: aim.fade(way.norm()), ticks: way.amax() / stride }
     }
-    let more = aim.traffic * far.saturating_sub(1) as f64;
-    if any { (1.0 + more).min(aim.most) } else { 0.0 }
+
+    /// The move per tick after a right turn by `angle`, m: the largest axis at full speed.
+    fn stride(&self, angle: f64, stride: f64) -> Position {
+        if self.ticks < 1.0 {
+            return Position::zeros();
+        }
+        let way = turned(self.way, -angle * self.fade);
+        way * (stride / way.amax())
+    }
+}
+
+/// The traffic round one robot in one tick.
+#[derive(Clone, Debug)]
+pub struct Traffic {
+    aim: Aim,
+    stride: f64,
+    /// The others' courses with the separation owed to them, m.
+    others: Vec<(Course, f64)>,
+}
+
+impl Traffic {
+    /// Room for `robots`. `stride` is the largest move per tick and axis, m.
+    pub fn with_capacity(robots: usize, aim: &Aim, stride: f64) -> Self {
+        Self { aim: aim.clone(), stride, others: Vec::with_capacity(robots) }
+    }
+
+    /// Forgets the last tick.
+    pub fn clear(&mut self) {
+        self.others.clear();
+    }
+
+    /// One more robot that wishes to walk and is owed `separation`, m.
+    pub fn add(&mut self, walk: Walk, separation: f64) {
+        self.others.push((Course::new(&self.aim, walk, self.stride), separation));
+    }
+
+    /// The right turn, rad, that a robot wishing to walk `own` should take: the one with the fewest
+    /// meetings plus `aim.price` meetings per radian, if everybody took it. 0 when a straight walk
+    /// meets nobody, at least `aim.angle` when it does.
+    pub fn turn(&self, own: Walk) -> f64 {
+        let own = Course::new(&self.aim, own, self.stride);
+        let straight = self.meetings(&own, 0.0, usize::MAX);
+        if straight == 0 {
+            return 0.0;
+        }
+        let (mut best, mut least) = (0.0, straight as f64);
+        for turn in (1..=TURNS).map(|step| self.aim.most * step as f64 / TURNS as f64) {
+            let price = self.aim.price * turn;
+            if price >= least {
+                break;
+            }
+            let cost = price + self.meetings(&own, turn, (least - price).ceil() as usize) as f64;
+            if cost < least {
+                (best, least) = (turn, cost);
+            }
+        }
+        best.max(self.aim.angle)
+    }
+
+    /// How many others `own` meets within `aim.look_ahead` ticks if everybody turns right by `angle`;
+    /// not counted on from `enough`.
+    fn meetings(&self, own: &Course, angle: f64, enough: usize) -> usize {
+        let velocity = own.stride(angle, self.stride);
+        let meets = |(other, separation): &&(Course, f64)| {
+            // Whoever stands is met by who walks, whoever walks only until one of both has arrived.
+            let walk = if other.ticks < 1.0 { own.ticks } else { own.ticks.min(other.ticks) };
+            let until = walk.min(self.aim.look_ahead as f64);
+            let apart = own.from - other.from;
+            let closing = velocity - other.stride(angle, self.stride);
+            let speed_2 = closing.norm_squared();
+            let nearest = if speed_2 > 0.0 { (-apart.dot(&closing) / speed_2).clamp(0.0, until) } else { 0.0 };
+            (apart + closing * nearest).norm_squared() < separation * separation
+        };
+        self.others.iter().filter(meets).take(enough).count()
+    }
 }
 
 #[cfg(test)]
@@ -50,52 +118,76 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
     use shared::params::Params;
+    use std::f64::consts::{PI, TAU};
 
     const STRIDE: f64 = 0.3;
+
+    fn aim() -> Aim {
+        Aim { angle: 0.1, most: 0.6, price: 3.0, look_ahead: 49, ..Params::safe().aim }
+    }
 
     fn walk(from: (f64, f64), to: (f64, f64)) -> Walk {
         Walk { from: Position::new(from.0, from.1), to: Position::new(to.0, to.1) }
     }
 
-    #[test]
-    fn head_on_walks_meet_when_the_way_between_them_is_used_up() {
-        let (own, other) = (walk((0.0, 0.0), (10.0, 0.0)), walk((10.0, 0.0), (0.0, 0.0)));
-        // 10 m less 0.6 m a tick are below 1.5 m from the 15th tick on.
-        assert_eq!(meeting(own, other, 1.5, STRIDE, 25), Some(15));
-        assert_eq!(meeting(own, other, 1.5, STRIDE, 14), None);
-        assert_eq!(meeting(own, walk((10.0, 1.6), (0.0, 1.6)), 1.5, STRIDE, 25), None);
+    fn turn(aim: &Aim, own: Walk, others: &[Walk]) -> f64 {
+        let mut traffic = Traffic::with_capacity(others.len(), aim, STRIDE);
+        others.iter().for_each(|other| traffic.add(*other, 1.5));
+        traffic.turn(own)
     }
 
     #[test]
-    fn a_robot_at_its_set_point_is_met_by_who_walks_through_it() {
-        let parked = walk((5.0, 0.1), (5.0, 0.1));
-        assert_eq!(meeting(walk((0.0, 0.0), (9.0, 0.0)), parked, 1.5, STRIDE, 25), Some(12));
-        assert_eq!(meeting(walk((0.0, 0.0), (3.0, 0.0)), parked, 1.5, STRIDE, 25), None);
+    fn who_meets_nobody_walks_straight() {
+        let own = walk((0.0, 0.0), (20.0, 0.0));
+        assert_eq!(turn(&aim(), own, &[]), 0.0);
+        assert_eq!(turn(&aim(), own, &[walk((20.0, 1.6), (0.0, 1.6))]), 0.0);
+        assert_eq!(turn(&aim(), own, &[walk((40.0, 0.0), (20.0, 0.0))]), 0.0, "beyond 49 ticks");
     }
 
     #[test]
-    fn more_meetings_far_ahead_ask_for_more_up_to_the_most() {
-        let aim = Aim { traffic: 0.3, near: 10, most: 1.8, ..Params::safe().aim };
-        let asked = |steps: &[usize]| traffic(&aim, steps.iter().copied());
-        assert_eq!(asked(&[]), 0.0);
-        assert_eq!((asked(&[20]), asked(&[2]), asked(&[2, 3, 4])), (1.0, 1.0, 1.0));
-        assert!((asked(&[11, 12, 13, 10]) - 1.6).abs() < 1e-12);
-        assert_eq!(asked(&[20; 9]), 1.8);
+    fn head_on_the_least_turn_is_enough() {
+        // Both turned by 0.1 rad pass each other at 2 m.
+        let own = walk((0.0, 0.0), (20.0, 0.0));
+        assert_eq!(turn(&aim(), own, &[walk((20.0, 0.0), (0.0, 0.0))]), 0.1);
     }
 
-    fn place() -> impl Strategy<Value = (f64, f64)> {
-        (0.0..25.0, 0.0..25.0)
+    #[test]
+    fn who_stands_is_met_and_passed() {
+        let stands = walk((8.0, -0.2), (8.0, -0.1));
+        let angle = turn(&aim(), walk((0.0, 0.0), (20.0, 0.0)), &[stands]);
+        assert!(8.0 * angle.sin() - 0.2 * angle.cos() >= 1.5 && angle < 0.3, "{angle}");
+        assert_eq!(turn(&aim(), walk((0.0, 0.0), (5.0, 0.0)), &[stands]), 0.0, "arrived before");
+    }
+
+    #[test]
+    fn a_ring_turns_into_a_roundabout() {
+        // Sixteen walks through one point, as fast as each other: a circle on which 1.5 m are kept.
+        let at = |k: usize| (10.0 * (TAU * k as f64 / 16.0).cos(), 10.0 * (TAU * k as f64 / 16.0).sin());
+        let walks: Vec<Walk> = (0..16).map(|k| walk(at(k), at(k + 8))).collect();
+        let free = Aim { price: 0.1, ..aim() };
+        let angle = turn(&free, walks[0], &walks[1..]);
+        let circle = 1.5 / (2.0 * (PI / 16.0).sin());
+        assert!(10.0 * angle.sin() > 0.8 * circle && angle < 0.6, "{angle}");
+        let dear = Aim { price: 1000.0, ..aim() };
+        assert_eq!(turn(&dear, walks[0], &walks[1..]), dear.angle);
     }
 
     proptest! {
         #[test]
-        fn ticks_that_are_not_looked_at_hold_no_meeting(a in place(), b in place(), c in place(), d in place()) {
-            let (own, other) = (walk(a, b), walk(c, d));
-            let near = |step: &usize| {
-                let reach = STRIDE * *step as f64;
-                (toward(own.from, own.to, reach) - toward(other.from, other.to, reach)).norm() < 1.5
-            };
-            prop_assert_eq!(meeting(own, other, 1.5, STRIDE, 49), (1..=49).find(near));
+        fn a_turn_is_in_bounds_and_costs_no_more_than_walking_straight(
+            places in prop::collection::vec(((0.0..25.0, 0.0..25.0), (0.0..25.0, 0.0..25.0)), 2..20),
+        ) {
+            let walks: Vec<Walk> = places.iter().map(|(from, to)| walk(*from, *to)).collect();
+            let aim = Aim { angle: 0.0, ..aim() };
+            let angle = turn(&aim, walks[0], &walks[1..]);
+            prop_assert!((0.0..=aim.most).contains(&angle));
+            let mut traffic = Traffic::with_capacity(walks.len(), &aim, STRIDE);
+            walks[1..].iter().for_each(|other| traffic.add(*other, 1.5));
+            let own = Course::new(&aim, walks[0], STRIDE);
+            let cost = |angle: f64| traffic.meetings(&own, angle, usize::MAX) as f64 + aim.price * angle;
+            for step in 0..=TURNS {
+                prop_assert!(cost(angle) <= cost(aim.most * step as f64 / TURNS as f64) + 1e-12);
+            }
         }
     }
 }

@@ -1,5 +1,6 @@
 //! `evaluate`: a policy beside everything simpler.
 
+use super::length::metres;
 use super::search;
 use crate::compare::{Contender, Entry, HorizonPart, Job, Plan, Run, Sample, expand, run_all};
 use crate::exit::{Ending, Failure, Outcome};
@@ -31,7 +32,7 @@ const RANDOM: &str = "random";
 Examples:
   ./run.sh evaluate --policy exchange_14 --scenario ex14_d --profile paper --set vodca.rows=each
   ./run.sh evaluate --policy boxes_8 --scenario box:8:3:1000..1019 --profile safe --seeds 1
-Two tables: the layout exactly as it is, and --seeds starts moved by up to --jitter-start. Medians with 95 % intervals
+Two tables: the layout exactly as it is, and --seeds starts moved by up to --start-jitter. Medians with 95 % intervals
 (seeded bootstrap) over the runs that succeeded. `vs best of grid` compares medians of path with the best fixed horizon
 of the paper's grid 5, 10, ..., 45, 49.")]
 pub struct Args {
@@ -54,8 +55,8 @@ pub struct Args {
     #[arg(long, default_value_t = 1_000)]
     first_seed: u64,
     /// Every start moves by a seeded draw of up to so many metres per axis
-    #[arg(long, value_name = "M", default_value_t = 0.1)]
-    jitter_start: f64,
+    #[arg(long, value_name = "METRES", default_value = "0.1", value_parser = metres)]
+    start_jitter: f64,
     /// Generations of the search for the best constant horizon per robot; 0: no search
     #[arg(long, value_name = "N", default_value_t = 40)]
     generations: u16,
@@ -85,12 +86,6 @@ impl Row {
 /// Evaluates and prints.
 pub fn run(args: Args) -> Ending {
     let stop = StopFlag::install().map_err(Failure::broken)?;
-    if !(0.0..=100.0).contains(&args.jitter_start) {
-        return Err(Failure::usage(format!(
-            "--jitter-start {} is not allowed; write metres in 0..=100",
-            args.jitter_start
-        )));
-    }
     let entries = expand(&args.scenario).map_err(Failure::usage)?;
     place::sweep_leftovers(); // of evaluations that were killed
     let constants = match args.generations {
@@ -98,7 +93,7 @@ pub fn run(args: Args) -> Ending {
         _ => best_constants(&args, &entries, &stop)?,
     };
     let mut csv = String::new();
-    for (title, jitter) in [("exactly as it is", 0.0), ("starts moved", args.jitter_start)] {
+    for (title, jitter) in [("exactly as it is", 0.0), ("starts moved", args.start_jitter)] {
         if jitter == 0.0 && title != "exactly as it is" || stop.is_set() {
             continue;
         }
@@ -157,7 +152,7 @@ fn plan(
         entries: entries.to_vec(),
         contenders,
         seeds: (args.first_seed..last).collect(),
-        jitter_start: jitter,
+        start_jitter: jitter,
         sets: args.set.clone(),
         max_ticks: None,
     };

@@ -5,6 +5,7 @@ pub mod compare;
 pub mod evaluate;
 pub mod figures;
 pub mod golden;
+pub mod length;
 pub mod params;
 pub mod range;
 pub mod replay;

@@ -1,5 +1,6 @@
 //! `rollout`: episodes for a learner.
 
+use super::length::metres;
 use super::run::Exchange;
 use super::run_policy::PolicyArgs;
 use crate::exit::{self, Ending, Failure};
@@ -85,11 +86,6 @@ pub struct Args {
     /// Cut an episode off so many ticks after everybody has arrived; left out: play on to the last tick, as in the paper
     #[arg(long, value_name = "TICKS")]
     after_arrival: Option<u64>,
-}
-
-fn metres(text: &str) -> Result<f64, String> {
-    let metres = text.parse().ok().filter(|metres: &f64| (0.0..=100.0).contains(metres));
-    metres.ok_or_else(|| format!("`{text}` is no length; write metres in 0..=100"))
 }
 
 /// Plays and records.

@@ -45,7 +45,7 @@ pub struct Plan {
     /// Seeds of whatever is random; what is not runs once, with the scenario's own seed.
     pub seeds: Vec<u64>,
     /// Every start moves by a seeded draw of up to so much per axis, m.
-    pub jitter_start: f64,
+    pub start_jitter: f64,
     /// Changes of parameters for all, as for `--set`; a contender's own win.
     pub sets: Vec<String>,
     /// Last tick instead of the scenarios'.
@@ -141,14 +141,14 @@ impl Plan {
             },
             ControllerKind::Orca => params.orca.push > 0.0,
         };
-        own || self.jitter_start > 0.0
+        own || self.start_jitter > 0.0
             || disturbance.noise > 0.0
             || disturbance.plan_loss > 0.0
             || disturbance.position_loss > 0.0
     }
 
     fn seeded(&self, scenario: &Scenario, params: &Params, seed: u64) -> Result<Scenario, ScenarioError> {
-        let mut scenario = match self.jitter_start {
+        let mut scenario = match self.start_jitter {
             0.0 => scenario.clone(),
             spread => scenario.jittered(spread, params.model.min_separation, seed)?,
         };
@@ -170,7 +170,7 @@ mod tests {
             entries: expand(scenario).unwrap(),
             contenders: contender.parse::<Contenders>().unwrap().0,
             seeds: vec![0, 1, 2],
-            jitter_start: 0.0,
+            start_jitter: 0.0,
             sets: vec![],
             max_ticks: None,
         };
@@ -192,7 +192,7 @@ mod tests {
         assert_eq!(count("paper:fixed:20", "disturbance.plan_delay=2"), 1);
         assert_eq!(count("paper:fixed:20", "disturbance.plan_loss=0.1"), 3);
         assert_eq!((count("orca", ""), count("orca", "orca.push=0.3"), count("orca", "horizon.jitter=2")), (1, 3, 1));
-        assert_eq!(runs("orca", "two_setpoint", |plan| plan.jitter_start = 0.1).unwrap().len(), 3);
+        assert_eq!(runs("orca", "two_setpoint", |plan| plan.start_jitter = 0.1).unwrap().len(), 3);
     }
 
     #[test]
@@ -210,7 +210,7 @@ mod tests {
                 .flat_map(|c| c.parse::<Contenders>().unwrap().0)
                 .collect(),
             seeds: vec![0],
-            jitter_start: 0.0,
+            start_jitter: 0.0,
             sets: vec!["vodca.turn=0.2".into()],
             max_ticks: Some(7),
         };

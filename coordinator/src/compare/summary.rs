@@ -17,7 +17,7 @@ pub struct Comparison {
     /// Seeds of what is random.
     pub seeds: Vec<u64>,
     /// Largest move of a start per axis, m.
-    pub jitter_start: f64,
+    pub start_jitter: f64,
     /// Parameters changed for all.
     pub sets: Vec<String>,
     /// Last tick in place of the scenarios'.
@@ -90,7 +90,7 @@ impl Comparison {
             version: VERSION,
             command: std::iter::once("./run.sh".to_string()).chain(std::env::args().skip(1)).collect(),
             seeds: plan.seeds.clone(),
-            jitter_start: plan.jitter_start,
+            start_jitter: plan.start_jitter,
             sets: plan.sets.clone(),
             max_ticks: plan.max_ticks,
             versions: Versions::here(),

@@ -109,7 +109,7 @@ mod tests {
             entries: scenarios.iter().flat_map(|spec| expand(spec).unwrap()).collect(),
             contenders: contenders.iter().flat_map(|spec| spec.parse::<Contenders>().unwrap().0).collect(),
             seeds: vec![0, 1],
-            jitter_start: 0.0,
+            start_jitter: 0.0,
             sets: vec![],
             max_ticks,
         }

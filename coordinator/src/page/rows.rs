@@ -3,19 +3,20 @@
 use agent::controller::{Neighbour, View};
 use agent::layout::Layout;
 use agent::mpc::problem::Row;
+use agent::vodca::memory::ConflictMemory;
 use agent::vodca::rows::collision_rows;
 use agent::vodca_controller::hazards;
 use shared::params::{ControllerKind, Params};
 use shared::step::Step;
 
 /// The rows of robot `robot` in tick `tick`, from the plans of the tick before. Empty when they cannot be
-/// found again in the number that was recorded (another controller, disturbed exchange). `turn` is the angle
-/// of the rows' normals at that tick, rad.
+/// found again in the number that was recorded (another controller, disturbed exchange). `memory` is
+/// the robot's before that tick.
 pub(super) fn rows(
     params: &Params,
     layout: &Layout,
     robot: usize,
-    turn: f64,
+    memory: &ConflictMemory,
     tick: u64,
     before: &[Step],
     now: &[Step],
@@ -31,7 +32,8 @@ pub(super) fn rows(
     };
     let neighbours: Vec<Neighbour> = now.iter().zip(before).map(heard).collect();
     let view = View { tick, horizon: now[robot].horizon, position: now[robot].position, neighbours: &neighbours };
-    let hazards = hazards(params, layout, robot, &view);
+    let hazards = hazards(params, layout, robot, memory, &view);
+    let turn = memory.turn(&params.vodca);
     let min_separation = params.model.min_separation;
     collision_rows(&params.vodca, min_separation, turn, &before[robot].plan, view.horizon, hazards, &mut rows);
     if rows.len() != now[robot].rows as usize {

@@ -104,10 +104,10 @@ fn lines(scenario: &Scenario, params: &Params, ticks: &[Vec<Step>]) -> Value {
     let mut memories = vec![ConflictMemory::default(); counts.len()];
     for (tick, pair) in ticks.windows(2).enumerate() {
         for robot in 0..pair[1].len() {
-            let turn = memories[robot].turn(&params.vodca);
-            // Only the turn of the rows is asked of it, which traffic ahead does not change.
+            let memory = memories[robot];
+            // Only the rows are asked of it, which traffic ahead does not change.
             memories[robot].remember(&params.aim, &params.vodca, pair[1][robot].rows as usize, 0.0);
-            let rows = rows(params, &layout, robot, turn, tick as u64 + 1, &pair[0], &pair[1]);
+            let rows = rows(params, &layout, robot, &memory, tick as u64 + 1, &pair[0], &pair[1]);
             counts.push(rows.len());
             found.extend(rows);
         }
@@ -148,7 +148,7 @@ pub fn live_frame(frame: &Frame, params: &Params, layout: &Layout) -> Value {
             let step = &frame.steps[robot];
             let rows = match frame.before.len() {
                 0 => Vec::new(),
-                _ => rows(params, layout, robot, frame.turns[robot], frame.tick, &frame.before, &frame.steps),
+                _ => rows(params, layout, robot, &frame.memories[robot], frame.tick, &frame.before, &frame.steps),
             };
             let lines: Vec<Value> = rows
                 .iter()

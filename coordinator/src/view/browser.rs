@@ -186,10 +186,18 @@ mod tests {
         let reader = thread::spawn(move || text(other));
         // Far more than the system buffers for a socket.
         for tick in 0..400 {
-            let _ = slot.offer(Frame { steps: samples::steps(150, tick), turns: vec![0.0; 150], ..sample(tick) });
+            let _ = slot.offer(Frame {
+                steps: samples::steps(150, tick),
+                memories: vec![Default::default(); 150],
+                ..sample(tick)
+            });
             thread::sleep(Duration::from_millis(1));
         }
-        slot.end(Some(Frame { steps: samples::steps(150, 400), turns: vec![0.0; 150], ..sample(400) }));
+        slot.end(Some(Frame {
+            steps: samples::steps(150, 400),
+            memories: vec![Default::default(); 150],
+            ..sample(400)
+        }));
         let events = reader.join().unwrap();
         assert!(events.contains("\"tick\":400") && events.ends_with("event: end\ndata: {}\n\n"));
         view.close(); // although the deaf one is still there

@@ -1,6 +1,7 @@
 //! One moment of a run, and the slot in which the newest one waits for the views.
 
 use crate::policy::Acting;
+use agent::vodca::memory::ConflictMemory;
 use shared::step::Step;
 use std::sync::{Arc, Condvar, Mutex, PoisonError, TryLockError};
 use std::time::Duration;
@@ -14,8 +15,8 @@ pub struct Frame {
     pub before: Vec<Step>,
     /// What every robot did in this tick.
     pub steps: Vec<Step>,
-    /// Angle of the normals of every robot's collision rows in this tick, rad.
-    pub turns: Vec<f64>,
+    /// What every robot remembered of conflicts before this tick.
+    pub memories: Vec<ConflictMemory>,
     /// How long the tick took.
     pub duration: Duration,
     /// Robots that have arrived.
@@ -102,7 +103,7 @@ pub(super) mod tests {
             tick,
             before: Vec::new(),
             steps: samples::steps(2, tick),
-            turns: vec![0.0; 2],
+            memories: vec![Default::default(); 2],
             duration: Duration::from_micros(420),
             arrived: 1,
             min_separation: 1.75,

@@ -133,7 +133,7 @@ impl Views {
                 tick,
                 before: self.before.clone(),
                 steps: steps.to_vec(),
-                turns: self.memories.iter().map(|memory| memory.turn(&self.params.vodca)).collect(),
+                memories: self.memories.clone(),
                 duration,
                 arrived: metrics.arrived(),
                 min_separation: metrics.min_separation(),
@@ -144,7 +144,7 @@ impl Views {
         }
         if tick > 0 {
             for (memory, step) in self.memories.iter_mut().zip(steps) {
-                // Only the turn of the rows is asked of it, which traffic ahead does not change.
+                // Only the rows are asked of it, which traffic ahead does not change.
                 memory.remember(&self.params.aim, &self.params.vodca, step.rows as usize, 0.0);
             }
         }

@@ -28,8 +28,6 @@ pub struct Params {
     pub vodca: Vodca,
     /// Aim to the right while in conflict (safe.md, rule 4).
     pub aim: Aim,
-    /// Ways round the obstacles.
-    pub route: RouteParams,
     /// Give way to robots that still travel (safe.md, rule 3).
     pub give_way: GiveWay,
     /// Hard cell rows on the first step (safe.md, rule 5).
@@ -152,6 +150,8 @@ pub struct Vodca {
     pub turn_lasting: f64,
     /// Share of the newest tick in the memory of how long the conflict has lasted.
     pub lasting_memory: f64,
+    /// How lasting a conflict (0..=1) costs a robot its patience; 1: nothing does.
+    pub patience: f64,
     /// Hard rows, or soft rows with an exact penalty.
     pub softness: Softness,
     /// What a robot does when its hard rows are infeasible.
@@ -230,9 +230,9 @@ pub enum Infeasible {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Aim {
-    /// phi, rad: the largest turn of the set-point; 0 switches the rule off.
+    /// phi, rad: the turn of the set-point that a conflict asks for.
     pub angle: f64,
-    /// lambda: share of the newest tick in the memory of being in conflict.
+    /// lambda: share of the newest tick in the memory of the turn.
     pub memory: f64,
     /// Distance to the set-point up to which nothing is turned, m.
     pub fade_start: f64,
@@ -240,21 +240,17 @@ pub struct Aim {
     pub fade_end: f64,
     /// Steps over which straight walks are compared: whoever will be met counts as conflict; 0 is off.
     pub look_ahead: usize,
-    /// Meetings within this many steps do not count as traffic.
-    pub near: usize,
-    /// What every meeting beyond the first adds to the turn, as a share of `angle`.
-    pub traffic: f64,
-    /// The largest turn in traffic, as a multiple of `angle`.
+    /// The largest turn that traffic ahead asks for, rad.
     pub most: f64,
+    /// What a turn costs, meetings per rad: it is taken where it spares more meetings than that.
+    pub price: f64,
 }
 
-/// Ways round the obstacles.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct RouteParams {
-    /// How lasting a conflict has to be (0..=1) for a robot to walk the shortest way round the obstacles;
-    /// 1 switches the rule off.
-    pub after: f64,
+impl Aim {
+    /// Share of a turn that is left at `distance` (m) from the set-point, 0..=1.
+    pub fn fade(&self, distance: f64) -> f64 {
+        ((distance - self.fade_start) / (self.fade_end - self.fade_start)).clamp(0.0, 1.0)
+    }
 }
 
 /// Give way to robots that still travel (safe.md, rule 3).

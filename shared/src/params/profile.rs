@@ -63,22 +63,13 @@ impl Params {
                 turn: 0.0,
                 turn_lasting: 0.0,
                 lasting_memory: 0.03,
+                patience: 1.0,
                 softness: Softness::Hard,
                 infeasible: Infeasible::Relax,
                 slack_linear: 1e5,
                 slack_quadratic: 1e3,
             },
-            aim: Aim {
-                angle: 0.0,
-                memory: 0.1,
-                fade_start: 1.5,
-                fade_end: 4.5,
-                look_ahead: 0,
-                near: 0,
-                traffic: 0.0,
-                most: 1.0,
-            },
-            route: RouteParams { after: 1.0 },
+            aim: Aim { angle: 0.0, memory: 0.1, fade_start: 1.5, fade_end: 4.5, look_ahead: 0, most: 0.6, price: 3.0 },
             give_way: GiveWay { radius: 0.0, clearance: 0.1 },
             cell: Cell { enabled: false, separation: 1.5, escape: 0.0, noise_bound: 0.0 },
             horizon: HorizonParams { jitter: 0 },
@@ -104,21 +95,13 @@ impl Params {
         params.vodca.turn = 0.24;
         params.vodca.turn_lasting = 0.48;
         params.vodca.lasting_memory = 0.025;
+        params.vodca.patience = 0.8;
         params.vodca.softness = Softness::Soft;
         params.vodca.slack_linear = 500.0;
         params.mpc.input_weight = 5.0;
-        params.aim = Aim {
-            angle: 0.19,
-            memory: 0.3,
-            fade_start: 1.5,
-            fade_end: 6.0,
-            look_ahead: 25,
-            near: 10,
-            traffic: 0.3,
-            most: 2.5,
-        };
+        params.aim =
+            Aim { angle: 0.19, memory: 0.3, fade_start: 1.5, fade_end: 6.0, look_ahead: 49, most: 0.6, price: 3.0 };
         params.horizon.jitter = 3;
-        params.route.after = 0.8;
         params.give_way.radius = 1.2;
         params.cell.enabled = true;
         params
