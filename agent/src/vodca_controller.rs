@@ -9,6 +9,7 @@ use crate::reference;
 use crate::route::Route;
 use crate::safety::cell::{Cell, Present};
 use crate::safety::last_check::{TOLERANCE, is_answer, nearest_safe};
+use crate::vodca::back_off;
 use crate::vodca::memory::ConflictMemory;
 use crate::vodca::rows::collision_rows;
 use crate::vodca::traffic::{Traffic, Walk};
@@ -96,18 +97,20 @@ impl VodcaController {
         traffic.turn(own)
     }
 
-    /// The set-point; without patience where the shortest way round the obstacles leads.
-    fn way_on(&self, from: Position) -> Position {
-        if self.memory.is_out_of_patience(&self.params.vodca) {
-            self.layout.routes[self.robot].aim(from)
-        } else {
-            self.layout.set_points[self.robot]
+    /// Where to go on: to the set-point; without patience where the shortest way round the obstacles leads;
+    /// in the end anywhere.
+    fn way_on(&self, view: &View<'_>) -> Position {
+        let Self { robot, params, layout, memory, .. } = self;
+        if !memory.is_out_of_patience(&params.vodca) {
+            return layout.set_points[*robot];
         }
+        let on = layout.routes[*robot].aim(view.position);
+        if memory.lasting < params.vodca.back_off { on } else { back_off::aim(*robot, view.tick, view.position, on) }
     }
 
     /// Rule 1: the reference, aimed by rule 4.
     fn aim(&mut self, view: &View<'_>) {
-        let set_point = self.way_on(view.position);
+        let set_point = self.way_on(view);
         match self.params.mpc.reference {
             Reference::SetPoint => reference::set_point(&mut self.target, set_point, view.horizon),
             Reference::Straight => {

@@ -32,6 +32,8 @@ pub enum Use {
     Episode = 11,
     /// Draws of a search.
     Search = 12,
+    /// Directions in which a stuck robot backs off.
+    BackOff = 13,
     /// The learner's first weights, batches and action noise.
     Learning = 20,
 }

@@ -152,6 +152,8 @@ pub struct Vodca {
     pub lasting_memory: f64,
     /// How lasting a conflict (0..=1) costs a robot its patience; 1: nothing does.
     pub patience: f64,
+    /// How lasting a conflict (0..=1) makes a robot without patience back off.
+    pub back_off: f64,
     /// Hard rows, or soft rows with an exact penalty.
     pub softness: Softness,
     /// What a robot does when its hard rows are infeasible.

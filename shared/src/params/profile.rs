@@ -64,6 +64,7 @@ impl Params {
                 turn_lasting: 0.0,
                 lasting_memory: 0.03,
                 patience: 1.0,
+                back_off: 1.0,
                 softness: Softness::Hard,
                 infeasible: Infeasible::Relax,
                 slack_linear: 1e5,
@@ -96,6 +97,7 @@ impl Params {
         params.vodca.turn_lasting = 0.48;
         params.vodca.lasting_memory = 0.025;
         params.vodca.patience = 0.8;
+        params.vodca.back_off = 0.95;
         params.vodca.softness = Softness::Soft;
         params.vodca.slack_linear = 500.0;
         params.mpc.input_weight = 5.0;

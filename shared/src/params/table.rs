@@ -124,6 +124,7 @@ pub const ENTRIES: &[Entry] = &[
     entry("vodca.turn_lasting", "rad", Between(-1.5, 1.5), "ours", "vodca.turn after a long conflict: what small angles leave stuck, large ones resolve"),
     entry("vodca.lasting_memory", "-", Above(0.0, 1.0), "ours", "share of the newest tick in the memory of how long a conflict has lasted; smaller: the turn grows later"),
     entry("vodca.patience", "-", Between(0.0, 1.0), "ours", "a robot whose conflict has lasted for this share of its memory lets everybody pass who has farther to go, and walks the shortest way round the obstacles; 1 is off: pockets beside obstacles and knots of parked robots are never left"),
+    entry("vodca.back_off", "-", Between(0.0, 1.0), "ours", "a robot without patience whose conflict has lasted for this share walks off in a random direction now and then; 1 is off: robots that all wait for another one wait for ever; smaller: dense crowds dissolve later"),
     entry("vodca.softness", "-", OneOf(&["hard", "soft"]), "safe rule 2", "soft: rows have slack from the start, the QP is always feasible"),
     entry("vodca.infeasible", "-", OneOf(&["relax", "hold"]), "paper is silent", "hard rows without a solution: solve again with slack, or stand still (a trap)"),
     entry("vodca.slack_linear", "1/m", Between(0.0, 1e9), "ours: rho1", "exact penalty: with 1e3 rows that could hold are violated in 17 % of problems, with 1e4 never; smaller: shorter dense paths (the cells keep the separation), slower past obstacles"),
