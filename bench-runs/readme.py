@@ -6,12 +6,17 @@
 Python's standard library is all it needs.
 """
 
+import csv
 import json
+import math
 import pathlib
+import statistics
 import sys
+import tomllib
 
 DATA = pathlib.Path(sys.argv[1])
-README = pathlib.Path(__file__).resolve().parent.parent / "README.md"
+HERE = pathlib.Path(__file__).resolve().parent
+README = HERE.parent / "README.md"
 
 
 def part(name):
@@ -55,8 +60,48 @@ def ablations():
     )
 
 
+def least_time(layout):
+    """Seconds until the last robot of a layout is within 0.1 m of its set-point if all walk straight at full speed."""
+    stride = 0.2 * 1.5  # m per tick and axis
+    robots = tomllib.loads((HERE.parent / "scenarios" / f"{layout}.toml").read_text())["robot"]
+    ways = [[to - at for at, to in zip(robot["start"], robot["set_point"])] for robot in robots]
+    ticks = [max(map(abs, way)) * (1 - 0.1 / math.hypot(*way)) / stride for way in ways]
+    return 0.2 * max(math.floor(count) + 1 for count in ticks)
+
+
+def targets():
+    quality = part("quality")
+    safe = {row["family"]: row for row in quality["rows"] if row["controller"].startswith("safe")}
+    with open(DATA / "quality" / "runs.csv") as file:
+        layouts = {}
+        for run in csv.DictReader(file):
+            layouts.setdefault(run["family"], {})[run["scenario"]] = None
+    rows = []
+    with open(HERE / "targets.csv") as file:
+        for want in csv.DictReader(file):
+            row = safe[want["family"]]
+            cells = [want["family"]]
+            for key, digits, names in (("ratio", 3, ("reference_ratio", "orca_rh_ratio")), ("time_s", 1, ("reference_s", "orca_rh_s"))):
+                median = round(row[key]["median"], digits)
+                bound = min(float(want[name]) for name in names if want[name])
+                mark = "" if median <= bound else " (above)"
+                cells += [want[names[0]], want[names[1]] or "-", f"{median:.{digits}f}{mark}"]
+            cells.append(f"{statistics.median(map(least_time, layouts[want['family']])):.1f}")
+            rows.append(cells)
+    head = ["layouts", "ratio: reference", "ORCA-RH", "safe", "time s: reference", "ORCA-RH", "safe", "nobody is faster than"]
+    return table(head, rows)
+
+
+def boxes():
+    return table(
+        ["controller", "arrived", "path / straight", "time s", "least separation m", "runs with a pair nearer than 1.5 m"],
+        [[f"`{row['controller']}`", *figures(row), str(row["runs_below"])] for row in part("random")["totals"]],
+    )
+
+
 text = README.read_text()
-for name, make in (("suite", suite), ("robustness", disturbances), ("ablations", ablations)):
+tables = {"suite": suite, "targets": targets, "robustness": disturbances, "random": boxes, "ablations": ablations}
+for name, make in tables.items():
     start, end = f"<!-- table: {name} -->", f"<!-- /table: {name} -->"
     before, rest = text.split(start)
     text = before + start + "\n" + make() + "\n" + end + rest.split(end)[1]

@@ -52,7 +52,8 @@ ablations() { # each rule of the safe profile left out or changed
         safe:fixed:20 \
         'safe[vodca.turn=0,vodca.turn_lasting=0]:fixed:20' \
         'safe[aim.angle=0]:fixed:20' \
-        'safe[vodca.turn=0,vodca.turn_lasting=0,aim.angle=0]:fixed:20' \
+        'safe[aim.angle=0,aim.look_ahead=0]:fixed:20' \
+        'safe[vodca.turn=0,vodca.turn_lasting=0,aim.angle=0,aim.look_ahead=0]:fixed:20' \
         'safe[vodca.turn_lasting=0.24]:fixed:20' \
         'safe[vodca.turn=0.35,vodca.turn_lasting=0.35]:fixed:20' \
         'safe[vodca.turn=0.15,vodca.turn_lasting=0.15]:fixed:20' \
@@ -64,9 +65,15 @@ ablations() { # each rule of the safe profile left out or changed
         'safe[aim.memory=0.1]:fixed:20' \
         'safe[aim.angle=0.35]:fixed:20' \
         'safe[aim.look_ahead=0]:fixed:20' \
-        'safe[aim.look_ahead=40]:fixed:20' \
-        'safe[aim.traffic=0]:fixed:20' \
-        'safe[aim.near=0]:fixed:20' \
+        'safe[aim.look_ahead=25]:fixed:20' \
+        'safe[aim.most=0.3]:fixed:20' \
+        'safe[aim.most=0.9]:fixed:20' \
+        'safe[aim.price=1]:fixed:20' \
+        'safe[aim.price=9]:fixed:20' \
+        'safe[vodca.patience=1]:fixed:20' \
+        'safe[vodca.patience=0.5]:fixed:20' \
+        'safe[vodca.back_off=1]:fixed:20' \
+        'safe[vodca.back_off=0.8]:fixed:20' \
         'safe[cell.enabled=false]:fixed:20' \
         'safe[cell.separation=0.75]:fixed:20' \
         'safe[vodca.slack_linear=100000]:fixed:20' \
@@ -78,7 +85,7 @@ ablations() { # each rule of the safe profile left out or changed
         'safe[horizon.jitter=2]:fixed:20'
 }
 random() { # ten thousand layouts nobody has looked at
-    compare random random-boxes:10000 --controllers safe:random
+    compare random random-boxes:10000 --controllers safe:random orca orca-rh
 }
 orca() { # ORCA over its time horizon, to be held against published numbers
     compare orca suite:all --seeds 10 --max-ticks 1000 --controllers \

@@ -7,9 +7,6 @@ use shared::policy::contract::{Contract, Observation};
 use shared::rollout::{About, RolloutError, Row, Shard, shards};
 use std::path::{Path, PathBuf};
 
-/// Shortest side of the box that is scaled to [-1, 1], m.
-const SHORTEST_SIDE: f64 = 1.0;
-
 /// Why rollouts cannot be learnt from.
 #[derive(Debug, thiserror::Error)]
 pub enum RolloutsError {
@@ -72,14 +69,7 @@ impl Survey {
     /// The contract whose observation scales the box of all positions to [-1, 1] on each axis.
     pub fn contract(&self) -> Contract {
         let [low, high] = self.bounds;
-        let axes = [0, 1];
-        let mut contract = Contract::standard(self.about.robots, true);
-        contract.observation = Observation {
-            offset: axes.map(|axis| 0.5 * (low[axis] + high[axis])),
-            scale: axes.map(|axis| 2.0 / (high[axis] - low[axis]).max(SHORTEST_SIDE)),
-            ..Observation::default()
-        };
-        contract
+        Contract { observation: Observation::over(low, high), ..Contract::standard(self.about.robots, true) }
     }
 }
 
@@ -148,9 +138,8 @@ fn metres_driven(row: &Row<'_>) -> f64 {
 
 /// Positions (m) as the actor takes them.
 fn scale(observation: &Observation, metres: &[f32], scaled: &mut [f32]) {
-    let Observation { offset, scale, .. } = observation;
     for (at, (scaled, metres)) in scaled.iter_mut().zip(metres).enumerate() {
-        *scaled = ((f64::from(*metres) - offset[at % 2]) * scale[at % 2]) as f32;
+        *scaled = observation.scaled(at % 2, f64::from(*metres));
     }
 }
 

@@ -19,8 +19,7 @@ use curve::{Curve, CurveError, Point};
 use plan::Plan;
 use score::Score;
 use session::{Round, Session, SessionError};
-use shared::Position;
-use shared::policy::contract::Contract;
+use shared::policy::contract::{Contract, Observation};
 use shared::policy::digest::sha256;
 use shared::policy::folder::{FolderError, PolicyFolder, resolve};
 use shared::rollout::{RolloutError, Shard};
@@ -325,22 +324,18 @@ fn layouts(plan: &Plan) -> Result<Vec<Scenario>, TrainError> {
 
 /// Positions scaled to [-1, 1] over everything that stands in the layouts.
 fn contract(plan: &Plan, layouts: &[Scenario]) -> Contract {
-    let points = || {
-        layouts.iter().flat_map(|layout| {
-            let robots = layout.robots.iter().flat_map(|robot| [robot.start, robot.set_point]);
-            robots.chain(layout.obstacles.iter().map(|obstacle| obstacle.position))
-        })
-    };
-    let bounds = |axis: fn(&Position) -> f64| {
-        let (low, high) = points()
-            .map(|point| axis(&point))
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), at| (low.min(at), high.max(at)));
-        ((low + high) / 2.0, 2.0 / (high - low).max(1.0))
-    };
-    let ((x, wide), (y, high)) = (bounds(|point| point.x), bounds(|point| point.y));
+    let points = layouts.iter().flat_map(|layout| {
+        let robots = layout.robots.iter().flat_map(|robot| [robot.start, robot.set_point]);
+        robots.chain(layout.obstacles.iter().map(|obstacle| obstacle.position))
+    });
+    let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+    for point in points {
+        for (axis, at) in [point.x, point.y].into_iter().enumerate() {
+            (low[axis], high[axis]) = (low[axis].min(at), high[axis].max(at));
+        }
+    }
     let mut contract = Contract::standard(layouts[0].robots.len(), true);
-    contract.observation.offset = [x, y];
-    contract.observation.scale = [wide, high];
+    contract.observation = Observation::over(low, high);
     contract.name = Some(plan.scenario.clone());
     contract.producer = Some(format!("vodca learner {}", env!("CARGO_PKG_VERSION")));
     contract.trained_from = Some(format!("{} {} seed {}", plan.scenario, plan.profile, plan.seed));

@@ -189,10 +189,9 @@ impl Contract {
 
     /// Writes the model's input for `positions` (m) into `input`, 2N numbers.
     pub fn normalise(&self, positions: &[Position], input: &mut [f32]) {
-        let Observation { offset, scale, .. } = &self.observation;
         for (pair, position) in input.chunks_exact_mut(2).zip(positions) {
-            pair[0] = ((position.x - offset[0]) * scale[0]) as f32;
-            pair[1] = ((position.y - offset[1]) * scale[1]) as f32;
+            pair[0] = self.observation.scaled(0, position.x);
+            pair[1] = self.observation.scaled(1, position.y);
         }
     }
 
@@ -209,6 +208,25 @@ impl Contract {
         let free = Horizon::from_action(action)?;
         let HorizonBounds { min, max } = self.horizon;
         Some(Horizon::saturating((free.steps() as i64).clamp(min as i64, max as i64)))
+    }
+}
+
+/// Shorter sides of a box of positions than this are not stretched to [-1, 1], m.
+const SHORTEST_SIDE: f64 = 1.0;
+
+impl Observation {
+    /// Scales the box between two corners (m, per axis) to [-1, 1] on each axis.
+    pub fn over(low: [f64; 2], high: [f64; 2]) -> Self {
+        Self {
+            offset: [0, 1].map(|axis| 0.5 * (low[axis] + high[axis])),
+            scale: [0, 1].map(|axis| 2.0 / (high[axis] - low[axis]).max(SHORTEST_SIDE)),
+            ..Self::default()
+        }
+    }
+
+    /// A coordinate on `axis` (0: x, 1: y), m, as the model takes it.
+    pub fn scaled(&self, axis: usize, metres: f64) -> f32 {
+        ((metres - self.offset[axis]) * self.scale[axis]) as f32
     }
 }
 
