@@ -54,7 +54,7 @@ ablations() { # each rule of the safe profile left out or changed
         'safe[aim.angle=0]:fixed:20' \
         'safe[aim.angle=0,aim.look_ahead=0]:fixed:20' \
         'safe[vodca.turn=0,vodca.turn_lasting=0,aim.angle=0,aim.look_ahead=0]:fixed:20' \
-        'safe[vodca.turn_lasting=0.24]:fixed:20' \
+        'safe[vodca.turn_lasting=0.16]:fixed:20' \
         'safe[vodca.turn=0.35,vodca.turn_lasting=0.35]:fixed:20' \
         'safe[vodca.turn=0.15,vodca.turn_lasting=0.15]:fixed:20' \
         'safe[give_way.radius=0]:fixed:20' \

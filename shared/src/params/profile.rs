@@ -93,16 +93,16 @@ impl Params {
         let mut params = Self::paper();
         params.mpc.reference = Reference::Straight;
         params.vodca.rows = RowChoice::Each;
-        params.vodca.turn = 0.24;
-        params.vodca.turn_lasting = 0.48;
+        params.vodca.turn = 0.16;
+        params.vodca.turn_lasting = 0.5;
         params.vodca.lasting_memory = 0.025;
         params.vodca.patience = 0.8;
         params.vodca.back_off = 0.95;
         params.vodca.softness = Softness::Soft;
-        params.vodca.slack_linear = 500.0;
+        params.vodca.slack_linear = 350.0;
         params.mpc.input_weight = 5.0;
         params.aim =
-            Aim { angle: 0.19, memory: 0.3, fade_start: 1.5, fade_end: 6.0, look_ahead: 49, most: 0.6, price: 3.0 };
+            Aim { angle: 0.1, memory: 0.4, fade_start: 2.2, fade_end: 5.4, look_ahead: 49, most: 0.6, price: 2.5 };
         params.horizon.jitter = 3;
         params.give_way.radius = 1.2;
         params.cell.enabled = true;
