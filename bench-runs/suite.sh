@@ -1,7 +1,7 @@
 #!/bin/sh
 # Runs what the tables of the README are made of; README.md beside this file says what each part shows.
 #   bench-runs/suite.sh                    all parts, into bench-runs/results
-#   bench-runs/suite.sh DIR PART ...       these parts: quality robustness ablations random orca
+#   bench-runs/suite.sh DIR PART ...       these parts: quality robustness ablations random patience orca
 # Every part leaves DIR/PART/ with runs.csv, table.md and summary.json. A part that is there already is kept:
 # remove its folder to run it anew.
 set -eu
@@ -9,7 +9,7 @@ here=$(cd "$(dirname "$0")" && pwd)
 root=$(dirname "$here")
 results=${1:-$here/results}
 [ $# -eq 0 ] || shift
-[ $# -gt 0 ] || set -- quality robustness ablations random orca
+[ $# -gt 0 ] || set -- quality robustness ablations random patience orca
 mkdir -p "$results"
 
 compare() { # compare PART ARGUMENTS OF compare ...
@@ -85,7 +85,13 @@ ablations() { # each rule of the safe profile left out or changed
         'safe[horizon.jitter=2]:fixed:20'
 }
 random() { # ten thousand layouts nobody has looked at
-    compare random random-boxes:10000 --controllers safe:random orca orca-rh
+    compare random random-boxes:10000 --controllers safe:random 'safe[vodca.patience=1]:random' orca orca-rh
+}
+patience() { # what is left waiting in dense boxes when the rules that free it are left out; seeds of its own
+    # shellcheck disable=SC2046 # a list of names
+    compare patience $(for seed in 0 1 2 3 4 5 6 7 8 9; do echo "rand32o0_s$seed rand48o0_s$seed"; done) \
+        --seed-list 100..105 --controllers safe:each:10,20,30,49,random \
+        'safe[vodca.patience=1]:each:10,20,30,49,random' 'safe[vodca.back_off=1]:each:10,20,30,49,random'
 }
 orca() { # ORCA over its time horizon, to be held against published numbers
     compare orca suite:all --seeds 10 --max-ticks 1000 --controllers \
@@ -94,7 +100,7 @@ orca() { # ORCA over its time horizon, to be held against published numbers
 
 for part; do
     case $part in
-    quality | robustness | ablations | random | orca) "$part" ;;
-    *) echo "error: there is no part \`$part\`; the parts are: quality robustness ablations random orca" >&2; exit 2 ;;
+    quality | robustness | ablations | random | patience | orca) "$part" ;;
+    *) echo "error: there is no part \`$part\`; the parts are: quality robustness ablations random patience orca" >&2; exit 2 ;;
     esac
 done

@@ -8,8 +8,11 @@ use shared::metrics::Disc;
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-/// Corners of the polygon that is walked round an obstacle: 2 % longer than its circle.
-const CORNERS: usize = 12;
+/// Corners of the polygon that is walked round an obstacle, fewest and most: 10 % and 2 % longer than its
+/// circle.
+const CORNERS: (usize, usize) = (6, 12);
+/// Corners in all, where there are many obstacles: the work grows with their square times the obstacles.
+const TOGETHER: usize = 600;
 /// By how much a way may cut into a disc, as a share of its radius: robots slide along it.
 const CUT: f64 = 1e-3;
 /// Nearer corners than this have been reached, m.
@@ -36,11 +39,12 @@ impl Corners {
     fn new(obstacles: &[Disc], separation: f64) -> Self {
         let closed: Vec<Closed> =
             obstacles.iter().map(|disc| Closed { centre: disc.centre, radius: separation + disc.extra }).collect();
-        let out = 1.0 / (PI / CORNERS as f64).cos();
+        let corners = (TOGETHER / closed.len().max(1)).clamp(CORNERS.0, CORNERS.1);
+        let out = 1.0 / (PI / corners as f64).cos();
         let round = |disc: &Closed| {
             let (centre, radius) = (disc.centre, disc.radius * out);
-            (0..CORNERS).map(move |corner| {
-                let (sin, cos) = (TAU * corner as f64 / CORNERS as f64).sin_cos();
+            (0..corners).map(move |corner| {
+                let (sin, cos) = (TAU * corner as f64 / corners as f64).sin_cos();
                 centre + Position::new(cos, sin) * radius
             })
         };

@@ -256,16 +256,15 @@ pub fn hazards<'a>(
     memory: &ConflictMemory,
     view: &'a View<'a>,
 ) -> impl Iterator<Item = Hazard<'a>> + Clone {
-    let patient = !memory.is_out_of_patience(&params.vodca);
+    let way = (layout.set_points[robot] - view.position).norm();
+    let gives_way = way < params.give_way.radius || memory.is_out_of_patience(&params.vodca);
     let owed = move |extra: f64| params.model.min_separation + layout.robot_extra[robot] + extra;
     let others = view.neighbours.iter().enumerate().filter(move |(other, _)| *other != robot);
     let neighbours = others.filter_map(move |(other, neighbour)| {
         let separation = owed(layout.robot_extra[other]);
-        let way = (layout.set_points[robot] - view.position).norm();
-        let gives_way = way < params.give_way.radius || !patient;
-        let wish = if gives_way { wish_to_let_pass(params, way, neighbour, &layout.routes[other]) } else { None };
-        if let Some(wish) = wish {
-            return Some(Hazard { course: wish, separation: separation + params.give_way.clearance });
+        let wish = || wish_to_let_pass(params, way, neighbour, &layout.routes[other]);
+        if let Some(course) = gives_way.then(wish).flatten() {
+            return Some(Hazard { course, separation: separation + params.give_way.clearance });
         }
         let (tick, plan) = neighbour.plan.as_ref()?;
         let age = (view.tick - 1).saturating_sub(*tick) as usize;
@@ -282,8 +281,10 @@ pub fn hazards<'a>(
 /// than its own `way` (m), by keeping away from where they wish to walk. (A plan that already avoids a
 /// parked robot shows no conflict.)
 fn wish_to_let_pass<'a>(params: &Params, way: f64, neighbour: &Neighbour, route: &Route) -> Option<Course<'a>> {
-    let (_, present) = neighbour.present?;
-    let stride = params.model.sample_time * params.model.max_speed;
-    let to = if params.vodca.patience < 1.0 { route.aim(present) } else { neighbour.set_point };
-    ((neighbour.set_point - present).norm() > way).then_some(Course::Wish { from: present, to, stride })
+    let (_, from) = neighbour.present?;
+    if (neighbour.set_point - from).norm() <= way {
+        return None;
+    }
+    let to = if params.vodca.patience < 1.0 { route.aim(from) } else { neighbour.set_point };
+    Some(Course::Wish { from, to, stride: params.model.sample_time * params.model.max_speed })
 }

@@ -366,7 +366,7 @@ mod tests {
     fn the_fade_must_end_after_it_starts() {
         let mut params = Params::safe();
         params.aim.fade_end = params.aim.fade_start;
-        assert!(params.validate().unwrap_err().to_string().contains("above aim.fade_start = 1.5"));
+        assert!(params.validate().unwrap_err().to_string().contains("above aim.fade_start = 2.2"));
     }
 
     #[test]

@@ -196,8 +196,7 @@ mod tests {
         let message = resolve("", &["aim.angel=1"]).unwrap_err();
         assert_eq!(
             message,
-            "--set aim.angel=1: section `aim` has no parameter `angel`; it has: angle, memory, fade_start, fade_end, look_ahead, \
-             near, traffic, most; \
+            "--set aim.angel=1: section `aim` has no parameter `angel`; it has: angle, memory, fade_start, fade_end, look_ahead, most, price; \
              did you mean `angle`?"
         );
         let message = resolve("vodca.rws = 1", &[]).unwrap_err();
