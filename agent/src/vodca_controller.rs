@@ -105,7 +105,10 @@ impl VodcaController {
             return layout.set_points[*robot];
         }
         let on = layout.routes[*robot].aim(view.position);
-        if memory.lasting < params.vodca.back_off { on } else { back_off::aim(*robot, view.tick, view.position, on) }
+        if !memory.backs_off(&params.vodca) {
+            return on;
+        }
+        back_off::aim(*robot, view.tick, view.position, on, 2.0 * params.model.min_separation)
     }
 
     /// Rule 1: the reference, aimed by rule 4.

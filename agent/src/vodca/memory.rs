@@ -27,6 +27,11 @@ impl ConflictMemory {
         vodca.patience < 1.0 && self.lasting >= vodca.patience
     }
 
+    /// Whether the conflict has lasted so long that the robot backs off now and then.
+    pub fn backs_off(&self, vodca: &Vodca) -> bool {
+        self.is_out_of_patience(vodca) && vodca.back_off < 1.0 && self.lasting >= vodca.back_off
+    }
+
     /// The angle by which the normals of the next rows are turned left, rad. Small angles give short
     /// paths through dense traffic; what they leave stuck, large ones resolve.
     pub fn turn(&self, vodca: &Vodca) -> f64 {
@@ -78,5 +83,8 @@ mod tests {
         let mut paper = ConflictMemory { lasting: 1.0, ..Default::default() };
         paper.remember(&Params::paper().aim, &Params::paper().vodca, 1, 0.0);
         assert!(!paper.is_out_of_patience(&Params::paper().vodca));
+        let never = Vodca { back_off: 1.0, ..vodca.clone() };
+        let long = ConflictMemory { lasting: 1.0, ..Default::default() };
+        assert!(long.backs_off(&vodca) && !long.backs_off(&never) && !memory.backs_off(&vodca));
     }
 }

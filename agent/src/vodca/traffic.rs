@@ -21,7 +21,7 @@ pub struct Walk {
 
 /// A walk with what does not depend on the turn.
 #[derive(Clone, Copy, Debug)]
-struct Course {
+struct Straight {
     from: Position,
     way: Position,
     /// Share of a turn that is left this near to the set-point, 0..=1.
@@ -30,7 +30,7 @@ struct Course {
     ticks: f64,
 }
 
-impl Course {
+impl Straight {
     /// `stride` is the largest move per tick and axis, m.
     fn new(aim: &Aim, walk: Walk, stride: f64) -> Self {
         let way = walk.to - walk.from;
@@ -52,8 +52,8 @@ impl Course {
 pub struct Traffic {
     aim: Aim,
     stride: f64,
-    /// The others' courses with the separation owed to them, m.
-    others: Vec<(Course, f64)>,
+    /// The others' walks with the separation owed to them, m.
+    others: Vec<(Straight, f64)>,
 }
 
 impl Traffic {
@@ -69,14 +69,14 @@ impl Traffic {
 
     /// One more robot that wishes to walk and is owed `separation`, m.
     pub fn add(&mut self, walk: Walk, separation: f64) {
-        self.others.push((Course::new(&self.aim, walk, self.stride), separation));
+        self.others.push((Straight::new(&self.aim, walk, self.stride), separation));
     }
 
     /// The right turn, rad, that a robot wishing to walk `own` should take: the one with the fewest
     /// meetings plus `aim.price` meetings per radian, if everybody took it. 0 when a straight walk
     /// meets nobody, at least `aim.angle` when it does.
     pub fn turn(&self, own: Walk) -> f64 {
-        let own = Course::new(&self.aim, own, self.stride);
+        let own = Straight::new(&self.aim, own, self.stride);
         let straight = self.meetings(&own, 0.0, usize::MAX);
         if straight == 0 {
             return 0.0;
@@ -97,9 +97,9 @@ impl Traffic {
 
     /// How many others `own` meets within `aim.look_ahead` ticks if everybody turns right by `angle`;
     /// not counted on from `enough`.
-    fn meetings(&self, own: &Course, angle: f64, enough: usize) -> usize {
+    fn meetings(&self, own: &Straight, angle: f64, enough: usize) -> usize {
         let velocity = own.stride(angle, self.stride);
-        let meets = |(other, separation): &&(Course, f64)| {
+        let meets = |(other, separation): &&(Straight, f64)| {
             // Whoever stands is met by who walks, whoever walks only until one of both has arrived.
             let walk = if other.ticks < 1.0 { own.ticks } else { own.ticks.min(other.ticks) };
             let until = walk.min(self.aim.look_ahead as f64);
@@ -183,7 +183,7 @@ mod tests {
             prop_assert!((0.0..=aim.most).contains(&angle));
             let mut traffic = Traffic::with_capacity(walks.len(), &aim, STRIDE);
             walks[1..].iter().for_each(|other| traffic.add(*other, 1.5));
-            let own = Course::new(&aim, walks[0], STRIDE);
+            let own = Straight::new(&aim, walks[0], STRIDE);
             let cost = |angle: f64| traffic.meetings(&own, angle, usize::MAX) as f64 + aim.price * angle;
             for step in 0..=TURNS {
                 prop_assert!(cost(angle) <= cost(aim.most * step as f64 / TURNS as f64) + 1e-12);
