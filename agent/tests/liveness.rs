@@ -1,4 +1,5 @@
 //! Layouts in which robots once waited for ever, kept so that they never do again.
+#![allow(clippy::unwrap_used)] // a panic is how a test fails
 
 use agent::team::Team;
 use shared::horizon::Horizon;
