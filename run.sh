@@ -17,7 +17,7 @@ cargo_release() { # cargo_release build|test ARGUMENTS
 }
 build() { # build PACKAGE...: silent when there is little to do
     quiet=-q
-    [ -x "$target/release/coordinator" ] || { quiet=; echo "building for the first time, some minutes ..." >&2; }
+    [ -x "$target/release/vodca" ] || { quiet=; echo "building for the first time, some minutes ..." >&2; }
     packages=
     for package; do packages="$packages -p $package"; done
     # shellcheck disable=SC2086 # words on purpose
@@ -37,7 +37,7 @@ case " $* " in
 " figures "*) for name in two_setpoint four_gate ex14_d; do [ ! -d "policies/$name" ] || server=policy-server; done ;;
 esac
 case " $* " in
-*" --foxglove "* | *" --foxglove="*) foxglove=coordinator/foxglove ;;
+*" --foxglove "* | *" --foxglove="*) foxglove=cli/foxglove ;;
 *) foxglove= ;;
 esac
 case " $* " in
@@ -50,14 +50,14 @@ policy) build policy-server; shift; exec "$target/release/policy-server" "$@" ;;
 esac
 features=${foxglove:+--features $foxglove}
 case ${1-} in
-run | bench | rollout) build coordinator agent ;;
+run | bench | rollout) build cli agent ;;
 learn) build learner; exec "$target/release/learner" "$@" ;;
 learner) build learner; shift; exec "$target/release/learner" "$@" ;;
 train) # Rollouts are runs of real processes with the policy server.
     build policy-server
-    build coordinator agent
+    build cli agent
     build learner
     exec "$target/release/learner" "$@" ;;
-*) build coordinator ;;
+*) build cli ;;
 esac
-exec "$target/release/coordinator" "$@"
+exec "$target/release/vodca" "$@"

@@ -14,8 +14,8 @@ port=18764
 for tool in curl script python3; do
     command -v "$tool" >/dev/null || { echo "error: $tool is missing" >&2; exit 2; }
 done
-cargo build -q --release --locked --manifest-path "$root/Cargo.toml" -p coordinator -p agent --bins
-coordinator=${CARGO_TARGET_DIR:-$root/target}/release/coordinator
+cargo build -q --release --locked --manifest-path "$root/Cargo.toml" -p cli -p agent --bins
+coordinator=${CARGO_TARGET_DIR:-$root/target}/release/vodca
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 mkdir -p "$out"

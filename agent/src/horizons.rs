@@ -1,8 +1,8 @@
 //! Where a robot's horizon of a tick comes from.
 
-use shared::horizon::Horizon;
-use shared::horizon_source::{HorizonSource, HorizonSourceError, HorizonSpec};
 use shared::team::{POLICY, Setup};
+use vodca::horizon::Horizon;
+use vodca::horizon_source::{HorizonSource, HorizonSourceError, HorizonSpec};
 
 /// The source of one robot's horizons.
 pub(crate) struct Horizons {

@@ -1,16 +1,3 @@
-//! One robot of the team: predicts, detects conflicts, solves its own MPC, publishes its plan.
-pub mod baseline;
-pub mod controller;
-pub mod golden;
-pub mod hearing;
+//! One robot of the team as a process.
 mod horizons;
-pub mod layout;
-pub mod mpc;
-pub mod reference;
-pub mod robot;
-pub mod route;
 pub mod run;
-pub mod safety;
-pub mod team;
-pub mod vodca;
-pub mod vodca_controller;

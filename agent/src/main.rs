@@ -1,11 +1,11 @@
 //! One robot of a team, as a process. The coordinator starts it; by hand: `agent --run DIR --robot I`.
 
-use agent::robot::Robot;
 use agent::run::{Launch, run};
 use clap::Parser;
 use shared::stop::StopFlag;
 use std::path::PathBuf;
 use std::process::ExitCode;
+use vodca::robot::Robot;
 
 /// One robot of a team. Everything but its number is in the folder of the run.
 #[derive(Parser)]

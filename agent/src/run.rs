@@ -1,22 +1,22 @@
 //! One robot as a process: waits for ticks, hears the others, plans, moves, tells.
 //!
-//! Planning and moving are [`Robot::step`], as in the in-process [`crate::team`]: both give the same bytes.
+//! Planning and moving are [`Robot::step`], as in the in-process [`vodca::team`]: both give the same bytes.
 
-use crate::hearing::Hearing;
 use crate::horizons::Horizons;
-use crate::robot::Robot;
 use shared::exchange::{self, Exchange, Order};
-use shared::horizon::Horizon;
-use shared::horizon_source::HorizonSourceError;
 use shared::messages::{Report, Stamps, kind};
 use shared::os;
-use shared::scenario::ScenarioError;
 use shared::services::ServiceError;
-use shared::step::Step;
 use shared::stop::StopFlag;
 use shared::team::{FIRST_EPOCH, Setup, TeamError};
 use std::path::Path;
 use std::time::{Duration, Instant};
+use vodca::hearing::Hearing;
+use vodca::horizon::Horizon;
+use vodca::horizon_source::HorizonSourceError;
+use vodca::robot::Robot;
+use vodca::scenario::ScenarioError;
+use vodca::step::Step;
 
 /// How often a waiting robot looks whether it was asked to stop.
 const LOOK_AROUND: Duration = Duration::from_millis(100);

@@ -1,8 +1,8 @@
 //! Which guarantee of separation held in a run, in one sentence, and why not where it did not.
 
-use shared::metrics::{RunMetrics, RunSummary, SEPARATION_TOLERANCE};
-use shared::params::Params;
-use shared::scenario::Scenario;
+use vodca::metrics::{RunMetrics, RunSummary, SEPARATION_TOLERANCE};
+use vodca::params::Params;
+use vodca::scenario::Scenario;
 
 /// What rounding may take from a start, m: the scenario check accepts starts up to this nearer.
 const START_TOLERANCE: f64 = 1e-9;

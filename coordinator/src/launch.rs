@@ -14,7 +14,7 @@ const AGENT: &str = "agent";
 pub enum Agents {
     /// The coordinator starts this program once per robot.
     Launch(Program),
-    /// Somebody starts them by hand; the commands are printed.
+    /// Somebody starts them by hand, with [`command_line`].
     ByHand,
 }
 

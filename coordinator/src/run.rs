@@ -5,17 +5,16 @@ use crate::launch::{self, Agents, LaunchError};
 use crate::policy::{Acting, PolicyError, PolicyOptions, PolicySummary};
 use crate::record::RecordError;
 use crate::roster::PeerLost;
-use crate::stdout::PrintError;
-use shared::Position;
 use shared::exchange::Kind;
 use shared::messages::{MAX_ROBOTS, Stamps};
 use shared::place::PlaceError;
-use shared::scenario::{Scenario, ScenarioError};
 use shared::services::ServiceError;
-use shared::step::Step;
 use shared::team::{Episodes, TeamError};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
+use vodca::Position;
+use vodca::scenario::{Scenario, ScenarioError};
+use vodca::step::Step;
 
 /// The usual [`Options::tick_deadline`]: a robot that hangs ends the run within 2 s, ending included.
 pub const TICK_DEADLINE: Duration = Duration::from_millis(1200);
@@ -101,9 +100,6 @@ pub enum RunError {
     /// The policy server.
     #[error(transparent)]
     Policy(#[from] PolicyError),
-    /// The robots' commands cannot be printed.
-    #[error(transparent)]
-    Print(#[from] PrintError),
     /// The observer could not record a tick.
     #[error(transparent)]
     Record(#[from] RecordError),

@@ -1,16 +1,15 @@
-//! Everything that watches a run: record, metrics, timings, progress. Whoever produces the ticks hands them in.
+//! Everything that watches a run: record, metrics, timings. Whoever produces the ticks hands them in.
 
 use crate::policy::PolicySummary;
-use crate::progress::Progress;
 use crate::record::latency::{self, LatencyWriter};
 use crate::record::{About, RecordError, Recorder, RunFolder};
 use crate::summary::{End, Summary, Timings};
 use crate::tick_parts::TickTimes;
-use shared::metrics::RunMetrics;
-use shared::params::Params;
-use shared::scenario::Scenario;
-use shared::step::Step;
 use std::path::{Path, PathBuf};
+use vodca::metrics::RunMetrics;
+use vodca::params::Params;
+use vodca::scenario::Scenario;
+use vodca::step::Step;
 
 /// A run that is being watched.
 pub struct Session {
@@ -21,11 +20,10 @@ pub struct Session {
     latency: LatencyWriter,
     metrics: RunMetrics,
     timings: Timings,
-    progress: Progress,
 }
 
 impl Session {
-    /// Writes what is known before the first tick into `folder` and shows the progress line.
+    /// Writes what is known before the first tick into `folder`.
     pub fn start(folder: RunFolder, scenario: &Scenario, params: &Params, about: About) -> Result<Self, RecordError> {
         let latency = folder.file(latency::FILE);
         Ok(Self {
@@ -33,7 +31,6 @@ impl Session {
             latency: LatencyWriter::create(latency, scenario.robots.len())?,
             metrics: RunMetrics::new(scenario, params),
             timings: Timings::new(scenario.robots.len()),
-            progress: Progress::of_run(scenario.max_ticks),
             scenario: scenario.clone(),
             params: params.clone(),
             about,
@@ -47,20 +44,12 @@ impl Session {
         self.latency.tick(tick, times, steps)?;
         self.metrics.observe(tick, steps);
         self.timings.observe(times, steps);
-        let metrics = &self.metrics;
-        self.progress.tick(tick + 1, metrics.arrived(), steps.len(), metrics.min_separation());
-        Ok(metrics.arrived_all())
+        Ok(self.metrics.arrived_all())
     }
 
     /// The figures so far.
     pub fn metrics(&self) -> &RunMetrics {
         &self.metrics
-    }
-
-    /// No progress line: something else uses the terminal.
-    pub fn hide_progress(&mut self) {
-        self.progress.finish();
-        self.progress = Progress::hidden();
     }
 
     /// The run's folder.
@@ -71,7 +60,6 @@ impl Session {
     /// Ends the record with its summary, for failed and interrupted runs as well. Gives the summary and
     /// the folder. `policy`: what the policy did, in a run with one.
     pub fn finish(self, end: End, policy: Option<PolicySummary>) -> Result<(Summary, PathBuf), RecordError> {
-        self.progress.finish();
         let names = (self.about.profile.as_str(), self.about.horizon.as_str());
         let mut summary = Summary::new(&self.scenario, &self.params, names, end, self.metrics.finish(), &self.timings);
         summary.policy = policy;

@@ -1,10 +1,10 @@
 //! What `--check-solver` found: every QP of a run solved by the ladder and by Clarabel.
 
 use crate::record::{RecordError, SUMMARY_FILE};
-use agent::mpc::cross_check::Comparison;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::path::Path;
+use vodca::mpc::cross_check::Comparison;
 
 /// An input that differs by more is a mistake of one of the two, m/s.
 pub const TOLERANCE: f64 = 1e-6;

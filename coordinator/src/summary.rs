@@ -6,11 +6,11 @@ use crate::policy::PolicySummary;
 use crate::solver_check::SolverCheck;
 use crate::tick_parts::{TickParts, TickTimes};
 use serde::{Deserialize, Serialize};
-use shared::metrics::RunSummary;
-use shared::params::Params;
-use shared::scenario::Scenario;
-use shared::step::Step;
 use std::collections::BTreeMap;
+use vodca::metrics::RunSummary;
+use vodca::params::Params;
+use vodca::scenario::Scenario;
+use vodca::step::Step;
 
 /// Version of the format.
 pub const VERSION: u32 = 1;

@@ -10,20 +10,19 @@ use crate::policy::PolicySource;
 use crate::record::RecordError;
 use crate::roster::{PeerLost, Roster};
 use crate::run::{Director, Ended, Episode, Observer, Options, Outcome, RunError, STALL, Tick, Verdict};
-use crate::stdout;
-use agent::hearing::measured;
-use shared::Position;
 use shared::exchange::Hub;
 use shared::messages::{MAX_ROBOTS, Report, Stamps, kind};
 use shared::os;
-use shared::params::Params;
 use shared::place::{self, Place};
-use shared::scenario::Scenario;
 use shared::services::{self, ServiceError};
-use shared::step::Step;
 use shared::stop::StopFlag;
 use shared::team::{FIRST_EPOCH, Setup, TeamFile};
 use std::time::{Duration, Instant};
+use vodca::Position;
+use vodca::hearing::measured;
+use vodca::params::Params;
+use vodca::scenario::Scenario;
+use vodca::step::Step;
 
 /// How often a waiting coordinator looks for signals and ended processes.
 const LOOK_AROUND: Duration = Duration::from_millis(50);
@@ -149,7 +148,7 @@ impl Team {
     fn start_robots(&mut self, robots: usize, stop: &StopFlag) -> Result<(), RunError> {
         for robot in 0..robots {
             match &self.options.agents {
-                Agents::ByHand => stdout::line(launch::command_line(&self.options.run, robot))?,
+                Agents::ByHand => {}
                 Agents::Launch(_) if stop.is_set() => return Ok(()), // `run` sees it, too
                 Agents::Launch(program) => {
                     let child = launch::start(program, &self.options.run, robot)?;

@@ -3,8 +3,8 @@
 use crate::latency::{Latency, Percentiles};
 use crate::run::Tick;
 use shared::messages::Stamps;
-use shared::step::Step;
 use std::collections::BTreeMap;
+use vodca::step::Step;
 
 /// The parts of one robot's tick, in their order. They add up to the time from the announcement until
 /// the coordinator has the robot's report.

@@ -6,8 +6,8 @@ use crate::adam::Adam;
 use crate::network::Network;
 use crate::sac::Learner;
 use crate::settings::Settings;
+use policy::tensor_file::{Data, TensorFile, TensorFileError};
 use serde::{Deserialize, Serialize};
-use shared::tensor_file::{Data, TensorFile, TensorFileError};
 use std::path::{Path, PathBuf};
 
 /// The format that is read and written.

@@ -1,13 +1,13 @@
 //! A trained actor as a version of a policies folder: ONNX file, contract and reference set.
 
 use crate::actor::Actor;
+use policy::contract::{Contract, METADATA_KEY};
+use policy::folder::{FolderError, PolicyFolder, Version};
+use policy::onnx::{ActorGraph, Dense};
 use serde::Serialize;
-use shared::Position;
-use shared::horizon::Horizon;
-use shared::policy::contract::{Contract, METADATA_KEY};
-use shared::policy::folder::{FolderError, PolicyFolder, Version};
-use shared::policy::onnx::{ActorGraph, Dense};
 use std::collections::BTreeMap;
+use vodca::Position;
+use vodca::horizon::Horizon;
 
 /// How far another back-end's mean and log sigma may differ, absolute.
 const TOLERANCE: f64 = 1e-4;
@@ -132,8 +132,8 @@ mod tests {
     use super::*;
     use crate::reference::wide;
     use crate::settings::Settings;
-    use shared::policy::onnx::Model;
-    use shared::random::{Use, stream, unit};
+    use policy::onnx::Model;
+    use vodca::random::{Use, stream, unit};
 
     fn actor() -> Actor {
         Actor::new(28, 14, &Settings { log_std_min: -0.1, ..Settings::default() }, 3)

@@ -5,7 +5,7 @@ use crate::reference::{difference, network, squash, wide};
 use crate::replay::Transition;
 use crate::sac::{Learner, Work};
 use crate::settings::Settings;
-use shared::random::{Use, stream, unit};
+use vodca::random::{Use, stream, unit};
 
 const S: usize = 6;
 const A: usize = 3;

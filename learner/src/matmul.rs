@@ -65,8 +65,8 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(64))]
         #[test]
         fn products_are_those_of_plain_loops(batch in 1usize..40, inputs in 1usize..50, outputs in 1usize..50, seed in any::<u64>()) {
-            let mut generator = shared::random::stream(seed, shared::random::Use::Problem, 0, 0);
-            let mut draw = |count: usize| -> Vec<f32> { (0..count).map(|_| shared::random::unit(&mut generator) as f32 - 0.5).collect() };
+            let mut generator = vodca::random::stream(seed, vodca::random::Use::Problem, 0, 0);
+            let mut draw = |count: usize| -> Vec<f32> { (0..count).map(|_| vodca::random::unit(&mut generator) as f32 - 0.5).collect() };
             let (x, w, d) = (draw(batch * inputs), draw(outputs * inputs), draw(batch * outputs));
             let mut y = vec![9.0; batch * outputs];
             forward(&x, &w, &mut y, batch);

@@ -6,8 +6,8 @@
 
 use crate::matmul;
 use crate::simd::wide;
-use shared::random::{self, Use};
 use std::ops::Range;
+use vodca::random::{self, Use};
 
 /// A network: y = W_n relu(... relu(W_1 x + b_1) ...) + b_n.
 #[derive(Clone, Debug, PartialEq)]

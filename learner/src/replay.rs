@@ -1,7 +1,7 @@
 //! The replay buffer: transitions by column in a ring of bounded size.
 
 use chacha20::rand_core::Rng;
-use shared::random;
+use vodca::random;
 
 /// One transition, from (s, a) to s'.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -201,7 +201,7 @@ impl Replay {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use shared::random::{Use, stream};
+    use vodca::random::{Use, stream};
 
     fn row(buffer: &mut Replay, number: usize) {
         let (x, y) = ([number as f32, 0.5], [number as f32 + 1.0, 0.5]);

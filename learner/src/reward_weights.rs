@@ -1,7 +1,7 @@
 //! What of the paper's reward is learnt from.
 
+use policy::reward::Terms;
 use serde::{Deserialize, Serialize};
-use shared::reward::Terms;
 
 /// Weights of the paper's reward terms: 1 each, as printed, is the default; everything else is a deviation.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

@@ -3,8 +3,8 @@
 use crate::replay::Transition;
 use crate::reward_weights::RewardWeights;
 use crate::sac::Learner;
-use shared::policy::contract::{Contract, Observation};
-use shared::rollout::{About, RolloutError, Row, Shard, shards};
+use policy::contract::{Contract, Observation};
+use policy::rollout::{About, RolloutError, Row, Shard, shards};
 use std::path::{Path, PathBuf};
 
 /// Why rollouts cannot be learnt from.
@@ -152,7 +152,7 @@ fn fits(path: &Path, shard: &Shard, robots: usize) -> Result<(), RolloutsError> 
 mod tests {
     use super::*;
     use crate::settings::Settings;
-    use shared::reward::Terms;
+    use policy::reward::Terms;
 
     /// Two episodes of three ticks: the first one arrives, the second one collides.
     fn write(folder: &Path, name: &str, robots: usize) -> PathBuf {

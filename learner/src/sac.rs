@@ -9,7 +9,7 @@ use crate::replay::{Batch, Replay, Transition};
 use crate::settings::Settings;
 use crate::squashed::Sample;
 use crate::temperature::Temperature;
-use shared::random::{self, Use};
+use vodca::random::{self, Use};
 
 /// What one update reports.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,7 +3,7 @@
 use crate::replay::Transition;
 use crate::sac::Learner;
 use crate::settings::Settings;
-use shared::random::{Use, stream, unit};
+use vodca::random::{Use, stream, unit};
 
 fn small(batch: usize) -> Settings {
     Settings {

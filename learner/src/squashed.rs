@@ -113,7 +113,7 @@ impl Sample {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use shared::random::{Use, stream};
+    use vodca::random::{Use, stream};
 
     #[test]
     fn the_correction_is_exact_near_zero_and_finite_far_out() {

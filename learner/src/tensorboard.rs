@@ -4,7 +4,7 @@
 //! all little-endian. Each record is a protobuf Event{wall_time 1, step 2, file_version 3, summary 5},
 //! a summary a list of Value{tag 1, simple_value 2}.
 
-use shared::policy::onnx::wire::Message;
+use policy::onnx::wire::Message;
 use std::fs::File;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -81,7 +81,7 @@ fn masked(bytes: &[u8]) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use shared::policy::onnx::wire::{Fields, Value};
+    use policy::onnx::wire::{Fields, Value};
     use std::process::Command;
 
     #[test]

@@ -3,11 +3,11 @@
 
 use learner::export::export;
 use learner::settings::Settings;
-use shared::policy::contract::Contract;
-use shared::policy::folder::PolicyFolder;
-use shared::random::{Use, stream, unit};
+use policy::contract::Contract;
+use policy::folder::PolicyFolder;
 use std::path::PathBuf;
 use std::process::Command;
+use vodca::random::{Use, stream, unit};
 
 const ROBOTS: usize = 14;
 
@@ -50,8 +50,8 @@ fn a_thousand_states_are_answered_as_in_training() {
     assert_eq!(answers.len(), 1000);
     let mut largest = 0.0f64;
     for (answer, state) in answers.iter().zip(&states) {
-        let positions: Vec<shared::Position> =
-            state.chunks_exact(2).map(|xy| shared::Position::new(xy[0], xy[1])).collect();
+        let positions: Vec<vodca::Position> =
+            state.chunks_exact(2).map(|xy| vodca::Position::new(xy[0], xy[1])).collect();
         let mut input = vec![0.0; 2 * ROBOTS];
         contract.normalise(&positions, &mut input);
         let (mean, log_std) = trained.answer(&input);

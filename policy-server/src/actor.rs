@@ -8,7 +8,7 @@ use ort::environment::Environment;
 use ort::session::Session;
 use ort::session::builder::GraphOptimizationLevel;
 use ort::value::TensorRef;
-use shared::policy::contract::{Contract, Tensor};
+use policy::contract::{Contract, Tensor};
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 

@@ -4,8 +4,8 @@ use crate::actor::{Actor, Answer};
 use crate::check::{Case, ReferenceSet, TryError};
 use crate::sample::{Choice, choose};
 use serde::Serialize;
-use shared::Position;
-use shared::horizon::Horizon;
+use vodca::Position;
+use vodca::horizon::Horizon;
 
 /// What a policy makes of one observation.
 #[derive(Clone, Debug, PartialEq, Serialize)]

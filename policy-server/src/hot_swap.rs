@@ -3,11 +3,11 @@
 
 use crate::actor::{Actor, Answer};
 use crate::sample::{Choice, choose};
-use shared::Position;
-use shared::horizon::Horizon;
-use shared::policy::folder::{Serving, Version};
+use policy::folder::{Serving, Version};
 use std::mem;
 use std::sync::mpsc::{Receiver, Sender, channel};
+use vodca::Position;
+use vodca::horizon::Horizon;
 
 /// A model that is loaded, warm and checked.
 pub struct Loaded {

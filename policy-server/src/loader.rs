@@ -4,7 +4,7 @@
 use crate::actor::{BackEndError, Runtime};
 use crate::check::{Candidate, CheckError, Prober, TryError, look, try_out};
 use crate::hot_swap::{Event, Loaded, Order};
-use shared::policy::folder::{FolderError, PolicyFolder, Rejected, Serving, Status, Version};
+use policy::folder::{FolderError, PolicyFolder, Rejected, Serving, Status, Version};
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender};
@@ -67,8 +67,7 @@ impl Loader {
     pub fn start(watched: Watched, prober: Prober, orders: Sender<Order>) -> Result<Self, StartError> {
         let runtime = Runtime::start(&prober.back_end)?;
         let status = Status { pid: std::process::id(), ..Status::default() };
-        let seen_upstream =
-            watched.upstream.as_deref().and_then(|path| see(&shared::policy::folder::resolve(path).ok()?));
+        let seen_upstream = watched.upstream.as_deref().and_then(|path| see(&policy::folder::resolve(path).ok()?));
         let mut loader = Self {
             watched,
             prober,
@@ -127,7 +126,7 @@ impl Loader {
     /// Copies a changed upstream policy into the run's folder and makes it current there.
     fn bring_in(&mut self) {
         let Some(upstream) = &self.watched.upstream else { return };
-        let Ok(file) = shared::policy::folder::resolve(upstream) else { return };
+        let Ok(file) = policy::folder::resolve(upstream) else { return };
         let now = see(&file);
         if now.is_none() || now == self.seen_upstream {
             return;
@@ -261,7 +260,7 @@ pub fn import(folder: &PolicyFolder, candidate: &Candidate) -> Result<Version, F
 /// What is there now; `None` when there is no such file.
 fn see(model: &std::path::Path) -> Seen {
     let meta = std::fs::metadata(model).ok()?;
-    let manifest = std::fs::metadata(model.with_file_name(shared::policy::folder::MANIFEST_FILE)).ok();
+    let manifest = std::fs::metadata(model.with_file_name(policy::folder::MANIFEST_FILE)).ok();
     let manifest = manifest.and_then(|meta| meta.modified().ok());
     Some((model.to_path_buf(), meta.len(), meta.modified().ok(), manifest))
 }

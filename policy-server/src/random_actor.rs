@@ -1,9 +1,9 @@
 //! `policy new --random`: a valid actor that was never trained, to try things with.
 
-use shared::policy::contract::{Contract, METADATA_KEY};
-use shared::policy::onnx::{ActorGraph, Dense};
-use shared::random::{self, Use};
+use policy::contract::{Contract, METADATA_KEY};
+use policy::onnx::{ActorGraph, Dense};
 use std::collections::BTreeMap;
+use vodca::random::{self, Use};
 
 /// Neurons of each of the two hidden layers, as the learner's.
 const HIDDEN: usize = 256;

@@ -2,9 +2,9 @@
 //! the tick and the robot only.
 
 use crate::actor::Answer;
-use shared::horizon::Horizon;
-use shared::policy::contract::Contract;
-use shared::random::{self, Use};
+use policy::contract::Contract;
+use vodca::horizon::Horizon;
+use vodca::random::{self, Use};
 
 /// How horizons are chosen from an answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

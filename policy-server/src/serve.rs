@@ -6,13 +6,12 @@ use crate::hot_swap::{Chosen, HotSwap, Loaded};
 use crate::loader::{Loader, Watched, import};
 use crate::sample::Choice;
 use anyhow::{Context, bail};
-use shared::Position;
+use policy::encoding::sha256_bytes;
+use policy::folder::{PolicyFolder, Version, resolve};
+use policy::run_folder;
+use policy::settings::PolicySettings;
 use shared::messages::{Observation, PolicyAnswer, answer};
 use shared::os;
-use shared::policy::folder::{PolicyFolder, Version, resolve};
-use shared::policy::run_folder;
-use shared::policy::settings::PolicySettings;
-use shared::random;
 use shared::services::PolicyPort;
 use shared::stop::StopFlag;
 use shared::team::{FIRST_EPOCH, Setup, TeamFile};
@@ -20,6 +19,8 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc;
 use std::time::Duration;
 use tracing::info;
+use vodca::Position;
+use vodca::random;
 
 /// How often an idle server looks whether the run still is there.
 const LOOK_AROUND: Duration = Duration::from_millis(100);
@@ -161,7 +162,7 @@ impl Server {
         };
         if let Some(acting) = acting {
             message.version = acting.version.0;
-            message.sha256 = digest_bytes(&acting.sha256);
+            message.sha256 = sha256_bytes(&acting.sha256).unwrap_or_default();
         }
         if kind != answer::NONE {
             for (robot, (action, horizon)) in self.chosen.iter().enumerate() {
@@ -171,24 +172,5 @@ impl Server {
         }
         message.stamp = os::now_ns();
         Ok(self.port.answer(message)?)
-    }
-}
-
-/// The 32 bytes of 64 hexadecimal digits; zeros for anything else.
-fn digest_bytes(digits: &str) -> [u8; 32] {
-    let mut bytes = [0; 32];
-    for (byte, pair) in bytes.iter_mut().zip(digits.as_bytes().chunks_exact(2)) {
-        let digit = |c: u8| (c as char).to_digit(16).unwrap_or_default() as u8;
-        *byte = digit(pair[0]) << 4 | digit(pair[1]);
-    }
-    bytes
-}
-
-#[cfg(test)]
-mod tests {
-    #[test]
-    fn digits_become_bytes() {
-        let bytes = super::digest_bytes(&format!("00ff1a{}", "0".repeat(58)));
-        assert_eq!(bytes[..4], [0, 255, 0x1a, 0]);
     }
 }

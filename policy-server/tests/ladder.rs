@@ -4,10 +4,10 @@
 mod common;
 
 use common::{constant_actor, contract, dense, prober};
+use policy::contract::ContractError;
+use policy::digest::sha256;
+use policy::onnx::wire::Message;
 use policy_server::check::{CheckError, Limits, Prober, TryError};
-use shared::policy::contract::ContractError;
-use shared::policy::digest::sha256;
-use shared::policy::onnx::wire::Message;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -57,7 +57,7 @@ fn with_operator(operator: &str) -> Vec<u8> {
 
 /// Appends a field to the graph: of two fields 7 the reader takes the last, so the whole is rebuilt.
 fn appended_to_graph(model: &[u8], field: u64, message: Message) -> Vec<u8> {
-    use shared::policy::onnx::wire::{Fields, Value};
+    use policy::onnx::wire::{Fields, Value};
     Fields::new(model)
         .fold(Message::new(), |rebuilt, next| match next.unwrap() {
             (7, Value::Bytes(graph)) => {
@@ -93,7 +93,7 @@ macro_rules! kind {
     };
 }
 
-fn tried(actor: shared::policy::onnx::ActorGraph) -> CheckError {
+fn tried(actor: policy::onnx::ActorGraph) -> CheckError {
     Bad::with(actor.write(), |_, _| {}).refused()
 }
 

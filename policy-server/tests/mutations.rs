@@ -6,10 +6,10 @@ mod common;
 
 use chacha20::rand_core::Rng;
 use common::{constant_actor, contract, prober};
+use policy::contract::from_json;
 use policy_server::check::{CheckError, TryError, look_at};
-use shared::policy::contract::from_json;
-use shared::random::{self, Use, below};
 use std::path::Path;
+use vodca::random::{self, Use, below};
 
 /// Mutants that only our own look sees.
 const LOOKED_AT: u64 = 4_000;

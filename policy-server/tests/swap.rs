@@ -5,16 +5,16 @@
 mod common;
 
 use common::{constant_actor, contract, prober};
+use policy::digest::sha256;
+use policy::folder::{PolicyFolder, Status, Version};
+use policy::onnx::ActorGraph;
 use policy_server::actor::{Actor, BackEnd, Runtime};
 use policy_server::hot_swap::{Event, HotSwap, Loaded, Order};
 use policy_server::loader::{Loader, Watched};
 use policy_server::sample::Choice;
-use shared::Position;
-use shared::policy::digest::sha256;
-use shared::policy::folder::{PolicyFolder, Status, Version};
-use shared::policy::onnx::ActorGraph;
 use std::sync::mpsc::{self, Receiver, Sender};
 use std::time::{Duration, Instant};
+use vodca::Position;
 
 const ROBOTS: usize = 2;
 /// Only a watchdog: how long a machine under load may take for one swap.

@@ -4,10 +4,10 @@
 //!
 //! Stamps are nanoseconds of the host's monotonic clock, comparable between its processes.
 
-use crate::horizon::{Horizon, MAX_HORIZON};
-use crate::prediction::Prediction;
-use crate::step::{Level, Status, Step};
-use crate::{Input, Position};
+use vodca::horizon::{Horizon, MAX_HORIZON};
+use vodca::prediction::Prediction;
+use vodca::step::{Level, Status, Step};
+use vodca::{Input, Position};
 
 /// The most robots a team can have (the exchange is measured up to this number).
 pub const MAX_ROBOTS: usize = 200;

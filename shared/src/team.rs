@@ -3,14 +3,14 @@
 
 use crate::exchange::Kind;
 use crate::messages::MAX_ROBOTS;
-use crate::params::{Params, ParamsFileError};
 use crate::place::Place;
-use crate::random;
-use crate::scenario::{Scenario, ScenarioError};
 use serde::{Deserialize, Serialize};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
+use vodca::params::{Params, ParamsFileError};
+use vodca::random;
+use vodca::scenario::{Scenario, ScenarioError};
 
 /// Name of the team's file in the folder of a run.
 pub const TEAM_FILE: &str = "team.toml";

@@ -23,18 +23,7 @@ pub fn program(name: &str) -> PathBuf {
 
 fn build() -> BTreeMap<String, PathBuf> {
     let output = Command::new(env!("CARGO"))
-        .args([
-            "build",
-            "--release",
-            "--bins",
-            "--message-format=json",
-            "-p",
-            "agent",
-            "-p",
-            "coordinator",
-            "-p",
-            "tests",
-        ])
+        .args(["build", "--release", "--bins", "--message-format=json", "-p", "agent", "-p", "cli", "-p", "tests"])
         .current_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join(".."))
         .stderr(Stdio::inherit())
         .output()
@@ -92,7 +81,7 @@ impl Run {
         let folder = home.path().join("run");
         let file = |name: &str| File::create(home.path().join(name)).expect("a file for the test");
         let coordinator = match robots {
-            Robots::Real => program("coordinator"),
+            Robots::Real => program("vodca"),
             Robots::Faulty(fault) => beside_fakes(home.path(), fault),
         };
         let child = Command::new(coordinator)
@@ -171,8 +160,8 @@ impl Drop for Run {
 
 /// The coordinator in a folder where fake robots lie beside it in place of the real ones.
 fn beside_fakes(folder: &Path, fault: &str) -> PathBuf {
-    let (coordinator, agent) = (folder.join("coordinator"), folder.join("agent"));
-    fs::copy(program("coordinator"), &coordinator).expect("a copy of the coordinator");
+    let (coordinator, agent) = (folder.join("vodca"), folder.join("agent"));
+    fs::copy(program("vodca"), &coordinator).expect("a copy of the coordinator");
     let script = format!("#!/bin/sh\nexec {} --fault {fault} \"$@\"\n", program("fake_agent").display());
     fs::write(&agent, script).expect("a script for the fake robots");
     fs::set_permissions(&agent, fs::Permissions::from_mode(0o755)).expect("it can be executed");

@@ -1,7 +1,7 @@
 //! The documents are true: every message has its entry, every command is accepted, every link leads somewhere.
 
 use clap::Parser;
-use coordinator::cli::Cli;
+use cli::cli::Cli;
 use std::fs;
 use std::path::{Path, PathBuf};
 

@@ -6,20 +6,20 @@
 use super::found::FoundPolicy;
 use super::server::{ServerError, ServerProcess, server_program};
 use crate::own_place::OwnPlace;
-use shared::Position;
+use policy::settings::{PolicySettings, SettingsError};
 use shared::exchange::Kind;
-use shared::horizon::Horizon;
 use shared::messages::{MAX_ROBOTS, Observation, PolicyAnswer, answer};
 use shared::os;
-use shared::params::Params;
 use shared::place::{Place, PlaceError};
-use shared::policy::settings::{PolicySettings, SettingsError};
-use shared::scenario::{Scenario, ScenarioError};
 use shared::services::{PolicyAsker, ServiceError};
 use shared::stop::StopFlag;
 use shared::team::{Episodes, FIRST_EPOCH, PARAMS_FILE, POLICY, SCENARIO_FILE, TeamError, TeamFile};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
+use vodca::Position;
+use vodca::horizon::Horizon;
+use vodca::params::Params;
+use vodca::scenario::{Scenario, ScenarioError};
 
 /// How often a waiting client looks whether the server lives.
 const LOOK_AROUND: Duration = Duration::from_millis(20);

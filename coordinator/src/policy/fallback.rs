@@ -2,7 +2,7 @@
 //! the default.
 
 use super::Source;
-use shared::horizon::Horizon;
+use vodca::horizon::Horizon;
 
 /// Bridges missing answers.
 #[derive(Clone, Debug)]

@@ -1,9 +1,9 @@
 //! Policies as users name them: a path, or the name of a folder in `policies/`.
 
-use shared::policy::MAX_MODEL_BYTES;
-use shared::policy::contract;
-use shared::policy::folder::{self, FolderError, MANIFEST_FILE, MODEL_FILE, resolve};
-use shared::policy::onnx::Model;
+use policy::MAX_MODEL_BYTES;
+use policy::contract;
+use policy::folder::{self, FolderError, MANIFEST_FILE, MODEL_FILE, resolve};
+use policy::onnx::Model;
 use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
@@ -73,8 +73,8 @@ impl FoundPolicy {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use shared::policy::contract::Contract;
-    use shared::policy::folder::PolicyFolder;
+    use policy::contract::Contract;
+    use policy::folder::PolicyFolder;
 
     #[test]
     fn what_is_no_policy_is_one_clear_error() {

@@ -8,7 +8,6 @@ mod record;
 mod server;
 mod summary;
 
-pub use self::record::digits;
 pub use self::server::{ServerError, server_program};
 pub use self::summary::{PolicySummary, ShadowSummary, VersionSummary};
 
@@ -17,18 +16,19 @@ use self::record::PolicyRecord;
 use self::server::ServerProcess;
 use self::summary::Tally;
 use crate::record::RecordError;
-use shared::Position;
-use shared::horizon::Horizon;
+use policy::encoding::hex;
+use policy::settings::{PolicySettings, SettingsError};
 use shared::messages::{MAX_ROBOTS, Observation, PolicyAnswer, answer};
 use shared::os;
 use shared::place::Place;
-use shared::policy::settings::{PolicySettings, SettingsError};
 use shared::services::{PolicyAsker, ServiceError};
 use shared::stop::StopFlag;
 use shared::team::FIRST_EPOCH;
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
+use vodca::Position;
+use vodca::horizon::Horizon;
 
 /// How often a waiting coordinator looks whether the server lives.
 const LOOK_AROUND: Duration = Duration::from_millis(20);
@@ -107,7 +107,7 @@ pub struct Acting {
 impl fmt::Display for Acting {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.source {
-            Source::Policy => write!(f, "v{:06} (sha256 {})", self.version, record::digits(&self.sha256[..6])),
+            Source::Policy => write!(f, "v{:06} (sha256 {})", self.version, hex(&self.sha256[..6])),
             Source::Held => f.write_str("no answer, horizons held"),
             Source::Default => f.write_str("no answer, default horizon"),
         }
@@ -247,7 +247,7 @@ impl PolicySource {
                 return Ok(true);
             }
             if Instant::now() > deadline {
-                return Err(PolicyError::NotSwapped { wanted: digits(wanted), patience: SWAP_PATIENCE });
+                return Err(PolicyError::NotSwapped { wanted: hex(wanted), patience: SWAP_PATIENCE });
             }
             std::thread::sleep(SWAP_LOOK);
         }

@@ -4,10 +4,11 @@ use super::Source;
 use crate::record::RecordError;
 use crate::record::folder::GrowingFile;
 use crate::record::horizons::HorizonsWriter;
-use shared::horizon::Horizon;
+use policy::encoding::hex;
 use shared::messages::PolicyAnswer;
 use std::fmt::Write;
 use std::path::Path;
+use vodca::horizon::Horizon;
 
 const FILE: &str = "policy.csv";
 const SHADOW_FILE: &str = "shadow.csv";
@@ -33,7 +34,7 @@ impl PolicyRecord {
         // Writing to a String cannot fail.
         let _ = match (source, answer) {
             (Source::Policy, Some(answer)) => {
-                writeln!(self.text, "{tick},policy,v{:06},{}", answer.version, digits(&answer.sha256))
+                writeln!(self.text, "{tick},policy,v{:06},{}", answer.version, hex(&answer.sha256))
             }
             (Source::Default, _) => writeln!(self.text, "{tick},default,,"),
             _ => writeln!(self.text, "{tick},held,,"),
@@ -52,12 +53,4 @@ impl PolicyRecord {
         self.acted.sync()?;
         self.shadow.map_or(Ok(()), HorizonsWriter::finish)
     }
-}
-
-/// Lower-case hexadecimal digits.
-pub fn digits(bytes: &[u8]) -> String {
-    bytes.iter().fold(String::new(), |mut text, byte| {
-        let _ = write!(text, "{byte:02x}");
-        text
-    })
 }

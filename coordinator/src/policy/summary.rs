@@ -1,12 +1,12 @@
 //! The policy's part of `summary.json`.
 
 use super::Source;
-use super::record::digits;
 use crate::latency::{Latency, Percentiles};
+use policy::encoding::hex;
 use serde::{Deserialize, Serialize};
-use shared::horizon::Horizon;
 use shared::messages::PolicyAnswer;
 use std::path::PathBuf;
+use vodca::horizon::Horizon;
 
 /// How a run went as its policy sees it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -116,7 +116,7 @@ impl Tally {
         }
         summary.late = summary.held + summary.default_used;
         let (Source::Policy, Some(answer)) = (source, answer) else { return };
-        let (version, sha256) = (format!("v{:06}", answer.version), digits(&answer.sha256));
+        let (version, sha256) = (format!("v{:06}", answer.version), hex(&answer.sha256));
         match summary.versions.last_mut() {
             Some(last) if last.version == version && last.sha256 == sha256 => last.to_tick = tick,
             _ => summary.versions.push(VersionSummary { version, sha256, from_tick: tick, to_tick: tick }),
@@ -126,7 +126,7 @@ impl Tally {
     pub(super) fn shadow(&mut self, answer: &PolicyAnswer, shadow: &[Horizon], used: &[Horizon]) {
         let Some(summary) = &mut self.summary.shadow else { return };
         if summary.sha256.is_empty() {
-            summary.sha256 = digits(&answer.sha256);
+            summary.sha256 = hex(&answer.sha256);
         }
         for (shadow, used) in shadow.iter().zip(used) {
             let distance = shadow.steps().abs_diff(used.steps()) as u64;

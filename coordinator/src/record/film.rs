@@ -14,9 +14,9 @@
 use super::scene;
 use super::trajectory::{level_word, status_word};
 use serde_json::json;
-use shared::params::Params;
-use shared::scenario::Scenario;
-use shared::step::Step;
+use vodca::params::Params;
+use vodca::scenario::Scenario;
+use vodca::step::Step;
 
 /// A stream of messages of one kind.
 #[derive(Clone, Debug)]

@@ -1,9 +1,9 @@
 //! `horizons.csv`: the horizons that were used, in the format that `--horizon script:FILE` reads.
 
 use super::folder::{GrowingFile, RecordError};
-use shared::horizon::Horizon;
 use std::fmt::Write as _;
 use std::path::PathBuf;
+use vodca::horizon::Horizon;
 
 /// Name of the file in a run folder.
 pub const FILE: &str = "horizons.csv";

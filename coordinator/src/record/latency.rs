@@ -2,9 +2,9 @@
 
 use super::folder::{GrowingFile, RecordError};
 use crate::tick_parts::{PARTS, TickTimes};
-use shared::step::Step;
 use std::fmt::Write as _;
 use std::path::PathBuf;
+use vodca::step::Step;
 
 /// Name of the file in a run folder.
 pub const FILE: &str = "latency.csv";

@@ -8,13 +8,13 @@ use super::folder::RecordError;
 use super::{film, scene};
 use mcap::records::MessageHeader;
 use mcap::{Compression, McapError, WriteOptions, Writer};
-use shared::Position;
-use shared::params::Params;
-use shared::scenario::Scenario;
-use shared::step::Step;
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::path::PathBuf;
+use vodca::Position;
+use vodca::params::Params;
+use vodca::scenario::Scenario;
+use vodca::step::Step;
 
 /// Name of the file in a run folder.
 pub const FILE: &str = "run.mcap";

@@ -18,8 +18,8 @@ pub mod horizons;
 pub mod latency;
 pub mod mcap;
 mod protobuf;
-#[cfg(test)]
-pub(crate) mod samples;
+#[doc(hidden)]
+pub mod samples;
 mod scene;
 pub mod trajectory;
 
@@ -30,11 +30,11 @@ use self::horizons::HorizonsWriter;
 use self::mcap::LogWriter;
 use self::trajectory::TrajectoryWriter;
 use serde::Serialize;
-use shared::Position;
-use shared::params::Params;
-use shared::scenario::Scenario;
-use shared::step::Step;
 use std::path::{Path, PathBuf};
+use vodca::Position;
+use vodca::params::Params;
+use vodca::scenario::Scenario;
+use vodca::step::Step;
 
 /// Name of the effective scenario in a run folder.
 pub const SCENARIO_FILE: &str = "scenario.toml";

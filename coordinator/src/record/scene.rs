@@ -4,10 +4,10 @@
 //! the log as well). Frame `world`, metres, z up; discs are 0.2 m high so that they can be seen from the side.
 
 use super::protobuf::{Message, Value, fields};
-use shared::Position;
-use shared::params::Params;
-use shared::scenario::Scenario;
-use shared::step::Step;
+use vodca::Position;
+use vodca::params::Params;
+use vodca::scenario::Scenario;
+use vodca::step::Step;
 
 /// Descriptors of `foxglove.SceneUpdate` and everything it uses (Foxglove SDK, MIT licence).
 pub(super) const SCENE_UPDATE: &[u8] = include_bytes!("schemas/SceneUpdate.bin");

@@ -6,10 +6,10 @@
 //! Numbers are the shortest decimal text that reads back to the same `f64`.
 
 use super::folder::{GrowingFile, RecordError};
-use shared::Position;
-use shared::step::{Level, Status, Step};
 use std::fmt::Write as _;
 use std::path::PathBuf;
+use vodca::Position;
+use vodca::step::{Level, Status, Step};
 
 /// Name of the file in a run folder.
 pub const FILE: &str = "trajectory.csv";

@@ -6,12 +6,12 @@ pub use orders::{Orders, Round};
 
 use crate::record::RecordError;
 use crate::run::{Director, Episode, Outcome, Tick, Verdict};
-use shared::metrics::RunMetrics;
-use shared::params::Params;
-use shared::reward::{Judgement, Reward};
-use shared::rollout::{About, Row, Shard};
+use policy::reward::{Judgement, Reward};
+use policy::rollout::{About, Row, Shard};
 use std::path::PathBuf;
 use std::time::Instant;
+use vodca::metrics::RunMetrics;
+use vodca::params::Params;
 
 /// What became of an episode.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -118,7 +118,7 @@ impl<'a> Recorder<'a> {
     fn write_round(&mut self) -> Result<(), RecordError> {
         let empty = Shard::new(self.shard.about.clone());
         let shard = std::mem::replace(&mut self.shard, empty);
-        let name = format!("{:06}.{}", self.round.number, shared::rollout::ENDING);
+        let name = format!("{:06}.{}", self.round.number, policy::rollout::ENDING);
         let path = self.out.as_ref().map(|out| out.join(name));
         if let Some(path) = &path {
             shard.write(path).map_err(|error| RecordError::Rollout { reason: error.to_string() })?;
@@ -169,7 +169,7 @@ impl Director for Recorder<'_> {
             arrived: None,
         });
         if let Some(digest) = self.round.policy {
-            self.shard.about.policy_sha256 = crate::policy::digits(&digest);
+            self.shard.about.policy_sha256 = policy::encoding::hex(&digest);
         }
         Ok(self.round.policy)
     }

@@ -1,5 +1,6 @@
 //! Which rounds of episodes are to be played: a number of them, or what a trainer writes line by line.
 
+use policy::encoding::sha256_bytes;
 use shared::stop::StopFlag;
 use std::io::BufRead;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
@@ -87,22 +88,10 @@ fn parse(line: &str) -> Option<Round> {
     let mut words = line.split_whitespace();
     let (number, episodes) = (words.next()?.parse().ok()?, words.next()?.parse().ok()?);
     let policy = match words.next() {
-        Some(digits) => Some(digest(digits)?),
+        Some(digits) => Some(sha256_bytes(digits)?),
         None => None,
     };
     (episodes > 0 && words.next().is_none()).then_some(Round { number, episodes, policy })
-}
-
-/// 32 bytes of 64 hexadecimal digits.
-fn digest(digits: &str) -> Option<[u8; 32]> {
-    let mut bytes = [0; 32];
-    if digits.len() != 64 || !digits.is_ascii() {
-        return None;
-    }
-    for (place, byte) in bytes.iter_mut().enumerate() {
-        *byte = u8::from_str_radix(&digits[2 * place..2 * place + 2], 16).ok()?;
-    }
-    Some(bytes)
 }
 
 #[cfg(test)]

@@ -5,16 +5,15 @@ use super::ViewError;
 use super::frame::{Frame, News, Slot};
 use super::viewers::Viewers;
 use crate::page;
-use crate::page::run_data::live_frame;
-use agent::layout::Layout;
-use shared::params::Params;
-use shared::scenario::Scenario;
+use crate::page::scene;
 use std::io::{self, Write};
 use std::net::Ipv4Addr;
 use std::sync::Arc;
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 use tiny_http::{Header, Request, Response, Server};
+use vodca::params::Params;
+use vodca::scenario::Scenario;
 
 /// How long a silent run goes without a word to a viewer; a viewer that is gone is noticed then.
 const HEARTBEAT: Duration = Duration::from_secs(5);
@@ -32,8 +31,6 @@ pub(super) struct BrowserView {
 /// What every viewer's thread needs.
 struct Shown {
     slot: Arc<Slot>,
-    params: Params,
-    layout: Layout,
     page: String,
 }
 
@@ -50,12 +47,7 @@ impl BrowserView {
         let server = Server::http((Ipv4Addr::LOCALHOST, port)).map_err(|error| failed(error.to_string()))?;
         let server = Arc::new(server);
         let bound = server.server_addr().to_ip().ok_or_else(|| failed("it has no address".into()))?;
-        let shown = Arc::new(Shown {
-            slot,
-            params: params.clone(),
-            layout: Layout::of(scenario, params.model.min_separation),
-            page: page::live(scenario, params, horizons),
-        });
+        let shown = Arc::new(Shown { slot, page: page::live(scenario, params, horizons) });
         let viewers = Viewers::default();
         let (serving, counted) = (server.clone(), viewers.clone());
         let thread = thread::spawn(move || {
@@ -117,7 +109,7 @@ fn send_frames(mut viewer: impl Write, shown: &Shown) -> io::Result<()> {
         match shown.slot.wait(seen, HEARTBEAT) {
             News::Frame(frame, number) => {
                 seen = number;
-                write_event(&mut viewer, &frame, shown)?;
+                write_event(&mut viewer, &frame)?;
             }
             News::Nothing => viewer.write_all(b": still there\n\n")?,
             News::Ended => {
@@ -129,13 +121,13 @@ fn send_frames(mut viewer: impl Write, shown: &Shown) -> io::Result<()> {
     }
 }
 
-fn write_event(viewer: &mut impl Write, frame: &Frame, shown: &Shown) -> io::Result<()> {
-    writeln!(viewer, "data: {}\n", live_frame(frame, &shown.params, &shown.layout))
+fn write_event(viewer: &mut impl Write, frame: &Frame) -> io::Result<()> {
+    writeln!(viewer, "data: {}\n", scene::frame(frame))
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::frame::tests::sample;
+    use super::super::frame::tests::{sample, sample_of};
     use super::*;
     use crate::record::samples;
     use std::io::Read;
@@ -186,18 +178,10 @@ mod tests {
         let reader = thread::spawn(move || text(other));
         // Far more than the system buffers for a socket.
         for tick in 0..400 {
-            let _ = slot.offer(Frame {
-                steps: samples::steps(150, tick),
-                memories: vec![Default::default(); 150],
-                ..sample(tick)
-            });
+            let _ = slot.offer(sample_of(150, tick));
             thread::sleep(Duration::from_millis(1));
         }
-        slot.end(Some(Frame {
-            steps: samples::steps(150, 400),
-            memories: vec![Default::default(); 150],
-            ..sample(400)
-        }));
+        slot.end(Some(sample_of(150, 400)));
         let events = reader.join().unwrap();
         assert!(events.contains("\"tick\":400") && events.ends_with("event: end\ndata: {}\n\n"));
         view.close(); // although the deaf one is still there

@@ -7,11 +7,9 @@
 use super::ViewError;
 use super::frame::{News, Slot};
 use super::viewers::Viewers;
-use crate::page::base64;
 use crate::record::film;
+use policy::encoding::base64;
 use serde_json::{Value, json};
-use shared::params::Params;
-use shared::scenario::Scenario;
 use std::io::ErrorKind;
 use std::net::{Ipv4Addr, TcpListener, TcpStream};
 use std::sync::Arc;
@@ -22,6 +20,8 @@ use tungstenite::handshake::server::{ErrorResponse, Request, Response};
 use tungstenite::http::{HeaderValue, StatusCode};
 use tungstenite::protocol::WebSocketConfig;
 use tungstenite::{Error, Message, WebSocket};
+use vodca::params::Params;
+use vodca::scenario::Scenario;
 
 const PROTOCOL: &str = "foxglove.websocket.v1";
 const PROTOCOL_HEADER: &str = "Sec-WebSocket-Protocol";
@@ -131,7 +131,7 @@ impl Viewer {
             .map(|(id, channel)| {
                 let binary = channel.schema_encoding == "protobuf";
                 let schema = match binary {
-                    true => base64::encode(&channel.description),
+                    true => base64(&channel.description),
                     false => String::from_utf8_lossy(&channel.description).into_owned(),
                 };
                 json!({
@@ -157,7 +157,9 @@ impl Viewer {
                 News::Frame(frame, number) => {
                     seen = number;
                     let time = film::nanoseconds(sample_time, frame.tick);
-                    for (channel, data) in film::tick(&shown.scenario, &shown.params, frame.tick, &frame.steps) {
+                    for (channel, data) in
+                        film::tick(&shown.scenario, &shown.params, frame.tick, frame.explainer.steps())
+                    {
                         for (id, _) in self.subscriptions.clone().into_iter().filter(|(_, wanted)| *wanted == channel) {
                             self.send(id, time, &data)?;
                         }
@@ -241,7 +243,7 @@ fn agree(request: &Request, mut response: Response) -> Result<Response, ErrorRes
 
 #[cfg(test)]
 mod tests {
-    use super::super::frame::tests::sample;
+    use super::super::frame::tests::{sample, sample_of};
     use super::*;
     use crate::record::samples;
     use tungstenite::client::IntoClientRequest;
@@ -337,11 +339,11 @@ mod tests {
         subscribe(&mut other, 9, 3);
         // Far more than the system buffers for a socket.
         for tick in 0..400 {
-            let frame = super::super::frame::Frame { steps: samples::steps(150, tick), ..sample(tick) };
+            let frame = sample_of(150, tick);
             let _ = slot.offer(frame); // given back when a viewer has the slot just then
             thread::sleep(Duration::from_millis(1));
         }
-        slot.end(Some(super::super::frame::Frame { steps: samples::steps(150, 400), ..sample(400) }));
+        slot.end(Some(sample_of(150, 400)));
         let ticks: Vec<u64> =
             std::iter::from_fn(|| data_of(&mut other)).map(|(_, time, _)| time / 200_000_000).collect();
         assert!(ticks.is_sorted() && ticks.last() == Some(&400), "{ticks:?}");

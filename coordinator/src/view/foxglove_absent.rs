@@ -2,10 +2,10 @@
 
 use super::ViewError;
 use super::frame::Slot;
-use shared::params::Params;
-use shared::scenario::Scenario;
 use std::convert::Infallible;
 use std::sync::Arc;
+use vodca::params::Params;
+use vodca::scenario::Scenario;
 
 /// There is none.
 pub(super) struct FoxgloveView(Infallible);

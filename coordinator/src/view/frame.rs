@@ -1,22 +1,17 @@
 //! One moment of a run, and the slot in which the newest one waits for the views.
 
 use crate::policy::Acting;
-use agent::vodca::memory::ConflictMemory;
-use shared::step::Step;
 use std::sync::{Arc, Condvar, Mutex, PoisonError, TryLockError};
 use std::time::Duration;
+use vodca::explain::Explainer;
 
 /// One moment of a run.
 #[derive(Clone, Debug)]
 pub struct Frame {
     /// k.
     pub tick: u64,
-    /// What every robot did in the tick before; empty at the first.
-    pub before: Vec<Step>,
-    /// What every robot did in this tick.
-    pub steps: Vec<Step>,
-    /// What every robot remembered of conflicts before this tick.
-    pub memories: Vec<ConflictMemory>,
+    /// What every robot did in this tick, and why.
+    pub explainer: Explainer,
     /// How long the tick took.
     pub duration: Duration,
     /// Robots that have arrived.
@@ -97,13 +92,21 @@ pub(super) mod tests {
     use super::*;
     use crate::policy::Source;
     use crate::record::samples;
+    use vodca::layout::Layout;
+    use vodca::params::Params;
 
     pub(in crate::view) fn sample(tick: u64) -> Frame {
+        sample_of(2, tick)
+    }
+
+    pub(in crate::view) fn sample_of(robots: usize, tick: u64) -> Frame {
+        let params = Params::safe();
+        let layout = Layout::of(&samples::scenario(robots), params.model.min_separation);
+        let mut explainer = Explainer::new(Arc::new(params), Arc::new(layout));
+        explainer.observe(tick, &samples::steps(robots, tick));
         Frame {
             tick,
-            before: Vec::new(),
-            steps: samples::steps(2, tick),
-            memories: vec![Default::default(); 2],
+            explainer,
             duration: Duration::from_micros(420),
             arrived: 1,
             min_separation: 1.75,

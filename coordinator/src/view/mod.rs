@@ -11,20 +11,20 @@ mod terminal;
 mod viewers;
 
 use crate::run::Tick;
-use crate::stdout;
-use agent::vodca::memory::ConflictMemory;
 use browser::BrowserView;
 use foxglove::FoxgloveView;
 pub use frame::Frame;
 use frame::Slot;
-use shared::metrics::RunMetrics;
-use shared::params::Params;
-use shared::scenario::Scenario;
-use shared::step::{Status, Step};
 use std::io::{self, IsTerminal};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 use terminal::TerminalView;
+use vodca::explain::Explainer;
+use vodca::layout::Layout;
+use vodca::metrics::RunMetrics;
+use vodca::params::Params;
+use vodca::scenario::Scenario;
+use vodca::step::{Status, Step};
 
 /// Time between two frames: no eye sees more, and the run pays for none beyond.
 const FRAME_TIME: Duration = Duration::from_millis(50);
@@ -63,9 +63,6 @@ pub enum ViewError {
     #[error("this build has no Foxglove view; `./run.sh` builds it when --foxglove is given (`--features foxglove`)")]
     #[cfg_attr(feature = "foxglove", allow(dead_code))] // the other build says it
     NoFoxglove,
-    /// Where to look could not be said.
-    #[error(transparent)]
-    Print(#[from] stdout::PrintError),
 }
 
 /// The views of one run.
@@ -74,32 +71,24 @@ pub struct Views {
     terminal: Option<TerminalView>,
     browser: Option<BrowserView>,
     foxglove: Option<FoxgloveView>,
-    params: Params,
-    memories: Vec<ConflictMemory>,
-    before: Vec<Step>,
+    explainer: Explainer,
     fallbacks: u64,
     next: Instant,
     last: Option<Frame>,
 }
 
 impl Views {
-    /// Opens what is wanted and says where it can be seen.
+    /// Opens what is wanted; [`Self::addresses`] says where it can be seen.
     pub fn open(wanted: Wanted, scenario: &Scenario, params: &Params) -> Result<Self, ViewError> {
         let slot = Arc::new(Slot::default());
         let browser = match wanted.browser {
             Some(port) => Some(BrowserView::open(port, slot.clone(), scenario, params, &wanted.horizons)?),
             None => None,
         };
-        if let Some(view) = &browser {
-            stdout::line(format_args!("{:<16}{}", "live view", view.address()))?;
-        }
         let foxglove = match wanted.foxglove {
             Some(port) => Some(FoxgloveView::open(port, slot.clone(), scenario, params)?),
             None => None,
         };
-        if let Some(view) = &foxglove {
-            stdout::line(format_args!("{:<16}{}", "foxglove", view.address()))?;
-        }
         let terminal = match wanted.terminal {
             true if !io::stdout().is_terminal() => return Err(ViewError::NoTerminal),
             true => Some(TerminalView::open(slot.clone(), scenario, params, &wanted.horizons)?),
@@ -110,9 +99,10 @@ impl Views {
             terminal,
             browser,
             foxglove,
-            params: params.clone(),
-            memories: vec![ConflictMemory::default(); scenario.robots.len()],
-            before: Vec::new(),
+            explainer: Explainer::new(
+                Arc::new(params.clone()),
+                Arc::new(Layout::of(scenario, params.model.min_separation)),
+            ),
             fallbacks: 0,
             next: Instant::now(),
             last: None,
@@ -127,13 +117,12 @@ impl Views {
         let Tick { tick, steps, acting, .. } = *seen;
         let fell_back = |step: &&Step| matches!(step.status, Status::Shifted | Status::Stopped);
         self.fallbacks += steps.iter().filter(fell_back).count() as u64;
+        self.explainer.observe(tick, steps);
         if Instant::now() >= self.next || metrics.arrived_all() {
             self.next = Instant::now() + FRAME_TIME;
             let frame = Frame {
                 tick,
-                before: self.before.clone(),
-                steps: steps.to_vec(),
-                memories: self.memories.clone(),
+                explainer: self.explainer.clone(),
                 duration,
                 arrived: metrics.arrived(),
                 min_separation: metrics.min_separation(),
@@ -142,14 +131,12 @@ impl Views {
             };
             self.last = self.slot.offer(frame);
         }
-        if tick > 0 {
-            for (memory, step) in self.memories.iter_mut().zip(steps) {
-                // Only the rows are asked of it, which traffic ahead does not change.
-                memory.remember(&self.params.aim, &self.params.vodca, step.rows as usize, 0.0);
-            }
-        }
-        self.before.clear();
-        self.before.extend_from_slice(steps);
+    }
+
+    /// Where a browser and Foxglove find the run: what it is called, and its address.
+    pub fn addresses(&self) -> impl Iterator<Item = (&'static str, &str)> {
+        let browser = self.browser.as_ref().map(|view| ("live view", view.address()));
+        browser.into_iter().chain(self.foxglove.as_ref().map(|view| ("foxglove", view.address())))
     }
 
     /// The run has ended: shows the last frame and gives the terminal back.

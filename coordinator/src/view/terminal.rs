@@ -11,12 +11,12 @@ use ratatui::prelude::{CrosstermBackend, Terminal};
 use ratatui::style::Stylize;
 use ratatui::text::{Line, Text};
 use ratatui::widgets::{Paragraph, Row, Table};
-use shared::params::Params;
-use shared::scenario::Scenario;
 use std::io;
 use std::sync::Arc;
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
+use vodca::params::Params;
+use vodca::scenario::Scenario;
 
 /// Draws frames in a thread of its own; gives the terminal back when dropped, after the run's end.
 pub(super) struct TerminalView {
@@ -27,7 +27,7 @@ pub(super) struct TerminalView {
 struct Shown {
     scenario: String,
     horizons: String,
-    set_points: Vec<shared::Position>,
+    set_points: Vec<vodca::Position>,
     min_separation: f64,
     max_ticks: u64,
 }
@@ -96,7 +96,7 @@ fn draw(area: &mut ratatui::Frame<'_>, frame: &Frame, shown: &Shown) {
         Layout::vertical([Constraint::Length(heading.height() as u16), Constraint::Min(1)]).areas(area.area());
     area.render_widget(Paragraph::new(heading), head);
     let header = Row::new(["robot", "distance m", "horizon", "rows", "QP us", "level", "status"]).bold();
-    let rows = frame.steps.iter().zip(&shown.set_points).enumerate().map(|(robot, (step, set_point))| {
+    let rows = frame.explainer.steps().iter().zip(&shown.set_points).enumerate().map(|(robot, (step, set_point))| {
         Row::new([
             robot.to_string(),
             format!("{:.2}", (set_point - step.next_position).norm()),
@@ -117,7 +117,7 @@ fn heading<'a>(frame: &Frame, shown: &Shown) -> Text<'a> {
         false => "-".into(),
     };
     let Shown { scenario, horizons, max_ticks, .. } = shown;
-    let (tick, arrived, robots) = (frame.tick + 1, frame.arrived, frame.steps.len());
+    let (tick, arrived, robots) = (frame.tick + 1, frame.arrived, frame.explainer.steps().len());
     let milliseconds = frame.duration.as_secs_f64() * 1e3;
     let fallbacks = frame.fallbacks;
     let mut lines = vec![

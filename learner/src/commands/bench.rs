@@ -4,8 +4,8 @@ use crate::replay::Transition;
 use crate::sac::Learner;
 use crate::settings::Settings;
 use shared::os::cpu_ns;
-use shared::random::{Use, stream, unit};
 use std::time::Instant;
+use vodca::random::{Use, stream, unit};
 
 /// Rows to draw from.
 const ROWS: usize = 10_000;

@@ -17,17 +17,17 @@ use crate::export::{ExportError, export};
 use crate::rollouts::{RolloutsError, remember_shard};
 use curve::{Curve, CurveError, Point};
 use plan::Plan;
+use policy::contract::{Contract, Observation};
+use policy::digest::sha256;
+use policy::folder::{FolderError, PolicyFolder, resolve};
+use policy::rollout::{RolloutError, Shard};
 use score::Score;
 use session::{Round, Session, SessionError};
-use shared::policy::contract::{Contract, Observation};
-use shared::policy::digest::sha256;
-use shared::policy::folder::{FolderError, PolicyFolder, resolve};
-use shared::rollout::{RolloutError, Shard};
-use shared::scenario::{Scenario, SetupError, set_up};
 use shared::stop::StopFlag;
 use state::{Best, Lock, State, StateError};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
+use vodca::scenario::{Scenario, SetupError, set_up};
 
 /// Versions of the actor that are kept beside the best one.
 const VERSIONS: usize = 3;
@@ -65,7 +65,7 @@ pub enum TrainError {
     Curve(#[from] CurveError),
     /// The profile's name.
     #[error(transparent)]
-    Profile(#[from] shared::params::UnknownProfile),
+    Profile(#[from] vodca::params::UnknownProfile),
 }
 
 /// How much is trained.
@@ -161,7 +161,7 @@ impl Trainer {
         arguments.extend(["--discard".into(), "--after-arrival".into(), "0".into()]);
         arguments.extend(["--cycle".into(), plan.evaluation_episodes.to_string()]);
         arguments.extend(["--start-jitter".into(), plan.evaluation_jitter.to_string()]);
-        arguments.extend(["--seed".into(), shared::random::episode_seed(plan.seed, 3).to_string()]);
+        arguments.extend(["--seed".into(), vodca::random::episode_seed(plan.seed, 3).to_string()]);
         let evaluation = Session::start(&arguments, &sessions.join(format!("{run:03}-evaluation")))?;
         let curve = Curve::open(out, state.round)?;
         Ok(Self {
@@ -305,7 +305,7 @@ impl Trainer {
 fn rollout_arguments(plan: &Plan, stream: u64) -> Vec<String> {
     let mut arguments = plan.session_arguments();
     arguments.extend(["--start-jitter".into(), plan.start_jitter.to_string()]);
-    arguments.extend(["--seed".into(), shared::random::episode_seed(plan.seed, 1 + stream).to_string()]);
+    arguments.extend(["--seed".into(), vodca::random::episode_seed(plan.seed, 1 + stream).to_string()]);
     if plan.after_arrival >= 0 {
         arguments.extend(["--after-arrival".into(), plan.after_arrival.to_string()]);
     }

@@ -12,7 +12,7 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::time::{Duration, Instant};
 
 /// Name of the coordinator's program beside this one.
-const PROGRAM: &str = "coordinator";
+const PROGRAM: &str = "vodca";
 /// How often a waiting trainer looks whether it was asked to stop.
 const LOOK_AROUND: Duration = Duration::from_millis(50);
 /// How long a round may take, and how much longer with every episode of it: the coordinator ends by itself
@@ -204,7 +204,7 @@ impl Session {
 
     /// The folder in which its policy server keeps the versions it was given.
     pub fn policy_folder(&self) -> PathBuf {
-        shared::policy::run_folder(&self.folder.join("session"))
+        policy::run_folder(&self.folder.join("session"))
     }
 
     fn ended(&self) -> SessionError {

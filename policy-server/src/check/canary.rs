@@ -1,7 +1,7 @@
 //! The canary set: observations every actor must answer with finite numbers, fast enough.
 
-use shared::Position;
-use shared::random::{self, Use};
+use vodca::Position;
+use vodca::random::{self, Use};
 
 /// Observations of the set.
 const CASES: u64 = 32;

@@ -1,9 +1,9 @@
 //! Why a model may not act: one kind of error per rung of the ladder.
 
 use super::MAX_OPSET;
+use policy::contract::ContractError;
+use policy::onnx::OnnxError;
 use serde::{Deserialize, Serialize};
-use shared::policy::contract::ContractError;
-use shared::policy::onnx::OnnxError;
 
 /// Why a model may not act.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -3,10 +3,10 @@
 use super::ports::check_ports;
 use super::reference::ReferenceSet;
 use super::{CheckError, Limits, MAX_OPSET};
-use shared::policy::contract::{self, Contract, Found};
-use shared::policy::digest::sha256;
-use shared::policy::folder::{MANIFEST_FILE, MODEL_FILE, REFERENCE_FILE};
-use shared::policy::onnx::{Model, Node};
+use policy::contract::{self, Contract, Found};
+use policy::digest::sha256;
+use policy::folder::{MANIFEST_FILE, MODEL_FILE, REFERENCE_FILE};
+use policy::onnx::{Model, Node};
 use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};

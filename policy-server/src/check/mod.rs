@@ -41,6 +41,6 @@ pub struct Limits {
 
 impl Default for Limits {
     fn default() -> Self {
-        Self { bytes: shared::policy::MAX_MODEL_BYTES, inference_us: 5_000, trial_seconds: 20, memory: 2 << 30 }
+        Self { bytes: policy::MAX_MODEL_BYTES, inference_us: 5_000, trial_seconds: 20, memory: 2 << 30 }
     }
 }

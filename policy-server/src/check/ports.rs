@@ -2,8 +2,8 @@
 //! before the first run, and some not even then.
 
 use super::CheckError;
-use shared::policy::contract::{Contract, Tensor};
-use shared::policy::onnx::{Dim, ElementType, Model, Port};
+use policy::contract::{Contract, Tensor};
+use policy::onnx::{Dim, ElementType, Model, Port};
 
 /// Checks the input and the outputs of `model`, read from `file`.
 pub(super) fn check_ports(file: &str, model: &Model, contract: &Contract) -> Result<(), CheckError> {

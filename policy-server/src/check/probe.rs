@@ -5,9 +5,9 @@
 
 use super::{Candidate, CheckError, Limits, ReferenceSet, Report, TryError, look, try_out};
 use crate::actor::{BackEnd, Runtime};
+use policy::contract::Contract;
 use rustix::process::{Resource, Rlimit, Signal, set_parent_process_death_signal, setrlimit};
 use serde::{Deserialize, Serialize};
-use shared::policy::contract::Contract;
 use std::io::{self, BufRead, Read, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};

@@ -2,9 +2,9 @@
 
 use super::{CheckError, TryError};
 use crate::actor::Answer;
+use policy::contract::Contract;
 use serde::{Deserialize, Serialize};
-use shared::horizon::Horizon;
-use shared::policy::contract::Contract;
+use vodca::horizon::Horizon;
 
 /// Observations with the answers that the trained actor gives.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

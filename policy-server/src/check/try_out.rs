@@ -2,11 +2,11 @@
 
 use super::{Limits, ReferenceSet, TryError, canary};
 use crate::actor::{Actor, Answer, Runtime};
+use policy::contract::Contract;
 use rustix::time::{ClockId, clock_gettime};
 use serde::{Deserialize, Serialize};
-use shared::Position;
-use shared::policy::contract::Contract;
 use std::time::Instant;
+use vodca::Position;
 
 /// Runs before anything is measured.
 const WARM_UP_RUNS: usize = 10;

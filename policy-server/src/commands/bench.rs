@@ -4,11 +4,11 @@ use crate::actor::{Actor, Answer, Runtime};
 use crate::cli::Means;
 use crate::random_actor::random_actor;
 use serde::Serialize;
-use shared::Position;
-use shared::random::{self, Use};
-use shared::scenario::MAX_ROBOTS;
 use std::process::ExitCode;
 use std::time::Instant;
+use vodca::Position;
+use vodca::random::{self, Use};
+use vodca::scenario::MAX_ROBOTS;
 
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Example:\n  ./run.sh policy bench --robots 14\n\

@@ -1,7 +1,7 @@
 //! `policy check`: may a model act?
 
 use crate::cli::Means;
-use shared::policy::folder::resolve;
+use policy::folder::resolve;
 use std::path::PathBuf;
 use std::process::ExitCode;
 

@@ -1,9 +1,9 @@
 //! `policy contract`: the contract of a model, to be completed and written beside it.
 
 use anyhow::Context;
-use shared::policy::contract::{Contract, find};
-use shared::policy::folder::resolve;
-use shared::policy::onnx::{Dim, Model};
+use policy::contract::{Contract, find};
+use policy::folder::resolve;
+use policy::onnx::{Dim, Model};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -16,7 +16,7 @@ pub(crate) struct ContractArgs {
 
 pub(crate) fn run(args: &ContractArgs) -> anyhow::Result<ExitCode> {
     let file = resolve(&args.file)?;
-    let limit = shared::policy::MAX_MODEL_BYTES;
+    let limit = policy::MAX_MODEL_BYTES;
     let size = std::fs::metadata(&file).with_context(|| format!("cannot read {}", file.display()))?.len();
     anyhow::ensure!(size <= limit, "{} has {size} bytes, more than the {limit} that are allowed", file.display());
     let model = Model::read(&std::fs::read(&file)?).with_context(|| file.display().to_string())?;

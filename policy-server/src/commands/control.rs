@@ -4,8 +4,8 @@
 use crate::cli::Means;
 use crate::loader::import;
 use anyhow::{Context, bail};
-use shared::policy::folder::{PolicyFolder, Serving, Status, Version, resolve};
-use shared::policy::run_folder;
+use policy::folder::{PolicyFolder, Serving, Status, Version, resolve};
+use policy::run_folder;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
@@ -150,7 +150,7 @@ fn wait_for(folder: &PolicyFolder, version: Version, before: &Status) -> anyhow:
 #[cfg(test)]
 mod tests {
     use super::*;
-    use shared::policy::folder::Rejected;
+    use policy::folder::Rejected;
 
     #[test]
     fn a_status_says_what_acts_what_acted_and_what_was_refused() {

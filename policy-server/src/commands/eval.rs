@@ -6,7 +6,7 @@ use crate::cli::Means;
 use crate::eval::evaluate;
 use crate::sample::Choice;
 use anyhow::Context;
-use shared::policy::folder::resolve;
+use policy::folder::resolve;
 use std::path::PathBuf;
 use std::process::ExitCode;
 

@@ -4,11 +4,11 @@ use crate::actor::{Actor, Runtime};
 use crate::cli::Means;
 use crate::eval::reference_set;
 use crate::random_actor::random_actor;
-use shared::policy::folder::PolicyFolder;
-use shared::random::{self, Use};
-use shared::scenario::MAX_ROBOTS;
+use policy::folder::PolicyFolder;
 use std::path::PathBuf;
 use std::process::ExitCode;
+use vodca::random::{self, Use};
+use vodca::scenario::MAX_ROBOTS;
 
 /// Observations of its reference set.
 const CASES: u64 = 16;

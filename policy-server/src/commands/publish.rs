@@ -2,7 +2,7 @@
 
 use crate::cli::Means;
 use crate::loader::import;
-use shared::policy::folder::{PolicyFolder, resolve};
+use policy::folder::{PolicyFolder, resolve};
 use std::path::PathBuf;
 use std::process::ExitCode;
 

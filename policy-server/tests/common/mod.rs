@@ -1,10 +1,10 @@
 //! What the tests of this crate share: the binary that tries models, and small actors.
 #![allow(dead_code)] // each test file uses its part
 
+use policy::contract::Contract;
+use policy::onnx::{ActorGraph, Dense};
 use policy_server::actor::BackEnd;
 use policy_server::check::{Limits, Prober};
-use shared::policy::contract::Contract;
-use shared::policy::onnx::{ActorGraph, Dense};
 use std::collections::BTreeMap;
 
 /// Tries models in processes of the real binary.

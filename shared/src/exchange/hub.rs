@@ -1,12 +1,12 @@
 //! The coordinator's side of the exchange.
 
 use super::Kind;
-use crate::horizon::Horizon;
 use crate::messages::{Announcement, Plan, Report, kind, order};
 use crate::os;
 use crate::place::Place;
 use crate::services::{Announcer, Reports, ServiceError, Services};
 use std::time::Duration;
+use vodca::horizon::Horizon;
 
 /// Announces ticks and collects reports.
 #[derive(Debug)]

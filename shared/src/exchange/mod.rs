@@ -14,14 +14,14 @@ mod relay;
 
 pub use hub::Hub;
 
-use crate::horizon::Horizon;
 use crate::messages::{Announcement, Report, order};
 use crate::os;
 use crate::place::Place;
-use crate::prediction::Prediction;
 use crate::services::{ServiceError, Services};
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
+use vodca::horizon::Horizon;
+use vodca::prediction::Prediction;
 
 /// The form of the exchange.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

@@ -1,16 +1,16 @@
 //! A robot without a planner that fails on request: `--fault ROBOT:KIND:TICK`, or `--fault ROBOT:KIND`
 //! before it opens anything. Every robot of a team gets the same arguments; the one with the number fails.
 
-use agent::hearing::Hearing;
 use agent::run::{Drive, Launch, run};
 use clap::Parser;
-use shared::Position;
-use shared::horizon::Horizon;
-use shared::prediction::Prediction;
-use shared::step::{Level, Status, Step};
 use shared::stop::StopFlag;
 use std::path::PathBuf;
 use std::process::ExitCode;
+use vodca::Position;
+use vodca::hearing::Hearing;
+use vodca::horizon::Horizon;
+use vodca::prediction::Prediction;
+use vodca::step::{Level, Status, Step};
 
 #[derive(Parser)]
 struct Args {

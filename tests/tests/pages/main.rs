@@ -14,7 +14,7 @@ fn own(path: &str) -> PathBuf {
 
 /// Runs the coordinator to its end.
 fn coordinator(arguments: &[&str]) -> Output {
-    Command::new(tests::program("coordinator")).args(arguments).output().expect("the coordinator starts")
+    Command::new(tests::program("vodca")).args(arguments).output().expect("the coordinator starts")
 }
 
 /// Standard output, or everything it said as a failure.

@@ -7,7 +7,7 @@ fn inference_and_the_way_from_observation_to_horizons_are_measured() {
     super::policy_server();
     let home = tempfile::tempdir().unwrap();
     let out = home.path().join("bench");
-    let output = Command::new(tests::program("coordinator"))
+    let output = Command::new(tests::program("vodca"))
         .args(["bench", "policy", "--quick", "--robots", "2,3", "--out"])
         .arg(&out)
         .output()
@@ -29,7 +29,7 @@ fn inference_and_the_way_from_observation_to_horizons_are_measured() {
 fn a_library_that_is_none_is_named() {
     super::policy_server();
     let home = tempfile::tempdir().unwrap();
-    let output = Command::new(tests::program("coordinator"))
+    let output = Command::new(tests::program("vodca"))
         .args(["bench", "policy", "--quick", "--onnxruntime", "/nowhere/libonnxruntime.so", "--out"])
         .arg(home.path().join("bench"))
         .output()

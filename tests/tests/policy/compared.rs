@@ -1,7 +1,7 @@
 //! Promise: a policy in a comparison gives what it gives in a run, on any number of cores, and leaves nothing.
 
 use crate::{actor, policy_server};
-use shared::policy::folder::PolicyFolder;
+use policy::folder::PolicyFolder;
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
@@ -17,7 +17,7 @@ fn published(place: &Path, robots: usize, steps: usize) -> PathBuf {
 }
 
 fn compare(place: &Path, out: &str, cores: &str, arguments: &str) -> Child {
-    Command::new(program("coordinator"))
+    Command::new(program("vodca"))
         .current_dir(place)
         .env("RAYON_NUM_THREADS", cores)
         .arg("compare")

@@ -2,12 +2,12 @@
 //! and a server started again joins in.
 
 use crate::{acted, actor, assert_same_bytes_in_process, policy_server};
-use shared::policy::folder::PolicyFolder;
-use shared::policy::run_folder;
-use shared::random::{self, Use};
+use policy::folder::PolicyFolder;
+use policy::run_folder;
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use tests::{Robots, Run, wait_until};
+use vodca::random::{self, Use};
 
 /// Starts another server for the run in `folder`, as its user would by hand.
 fn restart(folder: &Path) -> Child {

@@ -10,8 +10,8 @@ mod rollouts;
 mod swap;
 mod training;
 
-use shared::policy::contract::Contract;
-use shared::policy::onnx::{ActorGraph, Dense};
+use policy::contract::Contract;
+use policy::onnx::{ActorGraph, Dense};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -33,7 +33,7 @@ fn learner() -> PathBuf {
 /// The program of `package`, built when it is missing or older than its sources; `cargo test --workspace` has
 /// built it, and building it again with the features of other packages would take minutes.
 fn alone(package: &str) -> PathBuf {
-    let program = tests::program("coordinator").with_file_name(package);
+    let program = tests::program("vodca").with_file_name(package);
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     let sources = newest(&root.join(package).join("src")).max(newest(&root.join("shared/src")));
     if std::fs::metadata(&program).and_then(|meta| meta.modified()).is_ok_and(|built| built > sources) {
@@ -89,6 +89,6 @@ fn acted(run: &Path) -> Vec<[String; 3]> {
 
 /// Repeats the run in one process from its recorded horizons; the same bytes or a panic.
 fn assert_same_bytes_in_process(run: &Path) {
-    let output = Command::new(tests::program("coordinator")).arg("replay").arg(run).output().expect("it starts");
+    let output = Command::new(tests::program("vodca")).arg("replay").arg(run).output().expect("it starts");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stdout));
 }

@@ -1,10 +1,10 @@
 //! Promise: a new version that appears in a watched folder acts from between two ticks on, without a command.
 
 use crate::{acted, actor, assert_same_bytes_in_process, policy_server};
-use shared::policy::contract::Contract;
-use shared::policy::digest::sha256;
-use shared::policy::folder::{MANIFEST_FILE, MODEL_FILE, PolicyFolder};
-use shared::policy::run_folder;
+use policy::contract::Contract;
+use policy::digest::sha256;
+use policy::folder::{MANIFEST_FILE, MODEL_FILE, PolicyFolder};
+use policy::run_folder;
 use std::fs;
 use std::path::Path;
 use tests::{ENDLESS, Robots, Run, wait_until};

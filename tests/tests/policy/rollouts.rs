@@ -1,8 +1,8 @@
 //! Promise: recorded rollouts depend on nothing but what was asked for, and say how episodes ended.
 
 use crate::{actor, policy_server};
-use shared::policy::folder::PolicyFolder;
-use shared::rollout::{Row, Shard, shards};
+use policy::folder::PolicyFolder;
+use policy::rollout::{Row, Shard, shards};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -10,7 +10,7 @@ use tests::program;
 
 /// Plays `coordinator rollout ARGUMENTS` into the folder `out`; its shards.
 fn rollout(out: &Path, arguments: &str) -> Vec<PathBuf> {
-    let output = Command::new(program("coordinator"))
+    let output = Command::new(program("vodca"))
         .arg("rollout")
         .args(arguments.split_whitespace())
         .arg("--out")

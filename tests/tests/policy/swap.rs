@@ -2,9 +2,9 @@
 //! record tells the version of every tick.
 
 use crate::{acted, actor, assert_same_bytes_in_process, policy_server};
-use shared::policy::digest::sha256;
-use shared::policy::folder::PolicyFolder;
-use shared::policy::run_folder;
+use policy::digest::sha256;
+use policy::folder::PolicyFolder;
+use policy::run_folder;
 use tests::{Finished, Robots, Run};
 
 const ROBOTS: usize = 14;

@@ -8,7 +8,7 @@ use tests::program;
 const HEADER: &str = "part,what,n,count,p50_us,p90_us,p99_us,p999_us,max_us,floor_us,ratio";
 
 fn bench(arguments: &[&str], out: &Path) -> String {
-    let output = Command::new(program("coordinator"))
+    let output = Command::new(program("vodca"))
         .arg("bench")
         .args(arguments)
         .args(["--quick", "--out"])
@@ -91,7 +91,7 @@ fn an_earlier_run_is_compared_row_by_row_and_qps_are_written_for_others() {
 fn what_is_no_earlier_run_is_refused_before_any_work() {
     let home = tempfile::tempdir().expect("a folder for the test");
     let out = home.path().join("out");
-    let output = Command::new(program("coordinator"))
+    let output = Command::new(program("vodca"))
         .args(["bench", "all", "--compare", "/nowhere", "--out"])
         .arg(&out)
         .output()

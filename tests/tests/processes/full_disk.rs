@@ -15,7 +15,7 @@ fn a_file_that_cannot_grow_ends_the_run_with_one_error_and_a_readable_record() {
     let script = format!("trap '' XFSZ; ulimit -f {BLOCKS}; exec \"$0\" run 14 {ENDLESS} --out \"$1\"");
     let mut child = Command::new("sh")
         .args(["-c", &script])
-        .arg(program("coordinator"))
+        .arg(program("vodca"))
         .arg(&folder)
         .stdout(std::process::Stdio::null())
         .stderr(std::fs::File::create(place.path().join("stderr")).unwrap())
@@ -36,6 +36,6 @@ fn a_file_that_cannot_grow_ends_the_run_with_one_error_and_a_readable_record() {
     let columns = trajectory.lines().next().unwrap().split(',').count();
     assert!(trajectory.lines().all(|line| line.split(',').count() == columns), "whole rows only");
     assert!(!folder.join("summary.json").exists(), "a run that was cut has none");
-    let report = Command::new(program("coordinator")).arg("report").arg(&folder).output().unwrap();
+    let report = Command::new(program("vodca")).arg("report").arg(&folder).output().unwrap();
     assert!(report.status.success(), "{report:?}");
 }

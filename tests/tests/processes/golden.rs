@@ -2,11 +2,11 @@
 //! `agent/tests/golden.rs` holds against the reference.
 
 use crate::same_bytes::trajectory;
-use agent::golden::closed_loop::Case;
-use agent::team::Team;
+use evaluation::golden::closed_loop::Case;
 use std::fs;
 use std::path::Path;
 use tests::{Robots, Run};
+use vodca::team::Team;
 
 fn case(file: &str, name: &str) -> Case {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("golden").join(file);
@@ -35,7 +35,7 @@ fn reference_loops_come_out_of_processes_byte_for_byte() {
         let home = tempfile::tempdir().expect("a folder for the test");
         let (layout, script) = (home.path().join("layout.toml"), home.path().join("horizons.csv"));
         fs::write(&layout, scenario.to_toml().expect("a scenario has a TOML form")).expect("the scenario is written");
-        let line = |(tick, horizons): (usize, &Vec<shared::horizon::Horizon>)| {
+        let line = |(tick, horizons): (usize, &Vec<vodca::horizon::Horizon>)| {
             let horizons: Vec<String> = horizons.iter().map(ToString::to_string).collect();
             format!("{tick},{}\n", horizons.join(","))
         };

@@ -1,16 +1,16 @@
 //! Peer, relay, a busy machine and the team in one process give the same bytes.
 
-use agent::team::Team;
 use coordinator::record::trajectory::{HEADER, push_end, push_tick};
-use shared::horizon::Horizon;
-use shared::horizon_source::HorizonSource;
-use shared::params::Profile;
 use std::process::{Child, Command, Stdio};
 use tests::{Robots, Run};
+use vodca::horizon::Horizon;
+use vodca::horizon_source::HorizonSource;
+use vodca::params::Profile;
+use vodca::team::Team;
 
 /// The trajectory of the team in this process.
 fn in_process(scenario: &str, horizon: &str, profile: Profile, ticks: u64) -> String {
-    let (scenario, params) = shared::scenario::set_up(Some(scenario), None, profile, &[]).expect("a valid scenario");
+    let (scenario, params) = vodca::scenario::set_up(Some(scenario), None, profile, &[]).expect("a valid scenario");
     let spec = horizon.parse().expect("a valid source");
     let source = HorizonSource::new(&spec, scenario.robots.len(), 7, params.horizon.jitter);
     let source = source.expect("horizons for all");

@@ -1,0 +1,18 @@
+//! The subcommands: each file holds one command's arguments and its work.
+
+pub mod bench;
+pub mod compare;
+pub mod evaluate;
+pub mod figures;
+pub mod golden;
+pub mod length;
+pub mod params;
+pub mod replay;
+pub mod report;
+pub mod rollout;
+pub mod run;
+pub mod run_policy;
+pub mod scenario;
+pub mod search;
+pub mod sweep;
+pub mod verify;

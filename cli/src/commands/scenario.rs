@@ -1,0 +1,128 @@
+//! `scenario`: lists, checks and generates scenarios.
+
+use crate::exit::{Ending, Failure, Outcome};
+use crate::stdout;
+use clap::Subcommand;
+use std::path::PathBuf;
+use vodca::metrics::RunMetrics;
+use vodca::params::{Params, Profile};
+use vodca::scenario::{Scenario, names, set_up};
+
+/// Arguments of `scenario`.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "\
+Examples:
+  ./run.sh scenario list
+  ./run.sh scenario check my_layout.toml
+  ./run.sh scenario generate box:16:3:7 --out my_box.toml
+Families: ring:N, box:N:OBSTACLES:SEED, exchange:N:SEED, segregate:GROUPSxSIZE:SEED.")]
+pub struct Args {
+    #[command(subcommand)]
+    action: Action,
+}
+
+#[derive(Debug, Subcommand)]
+enum Action {
+    /// Print the names of the built-in scenarios
+    List,
+    /// Check a scenario file (or a name) and say what is in it
+    Check {
+        /// File, built-in name or family
+        scenario: String,
+        /// Parameter set to check distances with: safe, paper, orca or orca-rh
+        #[arg(long, default_value = "safe")]
+        profile: Profile,
+        /// Change a parameter (repeatable)
+        #[arg(long, value_name = "KEY=VALUE")]
+        set: Vec<String>,
+    },
+    /// Write a scenario of a family, or a copy of a built-in one, as a file to edit
+    Generate {
+        /// Family or built-in name
+        scenario: String,
+        /// The file to write; standard output when left out
+        #[arg(long)]
+        out: Option<PathBuf>,
+    },
+}
+
+/// Does what was asked.
+pub fn run(args: Args) -> Ending {
+    match args.action {
+        Action::List => {
+            for name in names() {
+                stdout::line(name)?;
+            }
+        }
+        Action::Check { scenario, profile, set } => {
+            let (scenario, params) = set_up(Some(&scenario), None, profile, &set).map_err(Failure::usage)?;
+            stdout::line(describe(&scenario, &params))?;
+        }
+        Action::Generate { scenario, out } => generate(&scenario, out)?,
+    }
+    Ok(Outcome::Done)
+}
+
+fn describe(scenario: &Scenario, params: &Params) -> String {
+    // Before the first tick the metrics know the distances at the start.
+    let least = RunMetrics::new(scenario, params).min_separation();
+    let wanted = params.model.min_separation;
+    let nearest = match least {
+        least if least.is_infinite() => "nothing to meet".into(),
+        least if least < wanted - 1e-9 => {
+            format!("{least:.3} m apart at the start, nearer than {wanted} m (allow_close_start)")
+        }
+        least => format!("at least {least:.3} m apart at the start"),
+    };
+    format!(
+        "{}: {} robots, {} obstacles, straight lines {:.1} m, at most {} ticks, {nearest}: usable",
+        scenario.name,
+        scenario.robots.len(),
+        scenario.obstacles.len(),
+        scenario.straight_line(),
+        scenario.max_ticks
+    )
+}
+
+/// Why a generated scenario could not be written.
+#[derive(Debug, thiserror::Error)]
+#[error("cannot write {}: {source}; choose another file with --out", path.display())]
+struct WriteError {
+    path: PathBuf,
+    source: std::io::Error,
+}
+
+fn generate(spec: &str, out: Option<PathBuf>) -> Result<(), Failure> {
+    let text = Scenario::resolve(Some(spec), None).and_then(|scenario| scenario.to_toml()).map_err(Failure::usage)?;
+    let Some(path) = out else {
+        stdout::text(text)?;
+        return Ok(());
+    };
+    // Never over a file that somebody may have edited.
+    let written =
+        std::fs::File::create_new(&path).and_then(|mut file| std::io::Write::write_all(&mut file, text.as_bytes()));
+    written.map_err(|source| Failure::broken(WriteError { path, source }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use coordinator::record::samples;
+
+    #[test]
+    fn the_description_tells_the_actual_distance_at_the_start() {
+        let (mut scenario, params) = (samples::scenario(2), Params::safe());
+        scenario.obstacles.clear();
+        assert!(describe(&scenario, &params).contains("at least 10.000 m apart"), "{}", describe(&scenario, &params));
+        scenario.robots[1].start.x = 1.2;
+        assert!(describe(&scenario, &params).contains(" 1.200 m apart at the start, nearer than 1.5 m"));
+        scenario.robots.truncate(1);
+        assert!(describe(&scenario, &params).contains("nothing to meet"));
+    }
+
+    #[test]
+    fn a_scenario_that_cannot_be_used_is_wrong_usage() {
+        let action = Action::Check { scenario: "nowhere".into(), profile: Profile::Safe, set: vec![] };
+        assert!(matches!(run(Args { action }), Err(Failure::Usage(_))));
+    }
+}

@@ -1,0 +1,200 @@
+//! What a user reads at the end of a run: a line per robot, and how it went.
+
+use coordinator::latency::Percentiles;
+use coordinator::policy::{PolicySummary, VersionSummary};
+use coordinator::summary::{End, Summary};
+use coordinator::tick_parts::PARTS;
+use evaluation::text_table::TextTable;
+use std::fmt::Write as _;
+use std::path::Path;
+
+/// The table and the summary of a run recorded in `folder`.
+pub fn report(summary: &Summary, folder: &Path) -> String {
+    format!("{}\n{}", robots(summary), figures(summary, folder))
+}
+
+fn robots(summary: &Summary) -> String {
+    let mut table = TextTable::new(&[
+        "robot",
+        "name",
+        "arrived",
+        "path m",
+        "straight m",
+        "activations",
+        "fallback",
+        "QP p50 us",
+        "p99 us",
+    ]);
+    for (number, (robot, solve)) in summary.run.robots.iter().zip(&summary.solve_latency).enumerate() {
+        table.row([
+            number.to_string(),
+            robot.name.clone(),
+            robot.arrived_tick.map_or("-".into(), |tick| tick.to_string()),
+            format!("{:.2}", robot.path_length),
+            format!("{:.2}", robot.straight_line),
+            robot.activations.to_string(),
+            robot.fallback_steps.to_string(),
+            format!("{:.1}", solve.p50_us),
+            format!("{:.1}", solve.p99_us),
+        ]);
+    }
+    table.aligned()
+}
+
+fn figures(summary: &Summary, folder: &Path) -> String {
+    let run = &summary.run;
+    let metres = |value: Option<f64>| value.map_or("-".into(), |value| format!("{value:.6} m"));
+    let ended = match summary.end {
+        _ if summary.guarantee_broken => "no: the guaranteed separation was broken".into(),
+        End::Arrived if run.success => "yes".into(),
+        End::Arrived => "no: everybody arrived, but not without collision".into(),
+        End::OutOfTicks => format!("no: {} of {} arrived in time", arrived(summary), run.robots.len()),
+        End::Interrupted => format!("no: asked to stop when {} of {} had arrived", arrived(summary), run.robots.len()),
+        End::PeerLost => "no: a robot's process was lost".into(),
+    };
+    let lines = [
+        ("success", ended),
+        ("ticks", run.ticks.to_string()),
+        ("completion time", run.completion_time.map_or("-".into(), |time| format!("{time:.1} s"))),
+        (
+            "path",
+            format!(
+                "{:.2} m, {} of the straight lines ({:.2} m)",
+                run.path_cost,
+                run.path_ratio.map_or("-".into(), |ratio| format!("{ratio:.4}")),
+                run.straight_line
+            ),
+        ),
+        ("min separation", format!("{} (between samples)", metres(run.min_separation))),
+        ("below r_min", format!("{} ticks, {} pairs", run.ticks_below_min_separation, run.pairs_below_min_separation)),
+        ("collisions", format!("{} pairs", run.collisions)),
+        ("guarantee", summary.guarantee.clone()),
+    ];
+    let policy = summary.policy.as_ref().map(policy_lines).unwrap_or_default();
+    let last = [("folder", folder.display().to_string())];
+    lines.iter().chain(&time_lines(summary)).chain(&policy).chain(&last).fold(
+        String::new(),
+        |mut text, (name, value)| {
+            let _ = writeln!(text, "{name:<16}{value}"); // writing to a String cannot fail
+            text
+        },
+    )
+}
+
+fn time_lines(summary: &Summary) -> Vec<(&'static str, String)> {
+    let both = |figures: &Percentiles| format!("p50 {:.0} us, p99 {:.0} us", figures.p50_us, figures.p99_us);
+    let mut lines = vec![("tick", both(&summary.tick_latency))];
+    let part = |name: &&str| summary.tick_parts.get(*name).map(|figures| format!("{name} {:.1}", figures.p50_us));
+    let parts: Vec<String> = PARTS.iter().filter_map(part).collect();
+    if !parts.is_empty() {
+        lines.push(("of a robot's", format!("{} us (p50 each)", parts.join(", "))));
+    }
+    if let Some(late) = &summary.lateness {
+        lines.push(("lateness", both(late)));
+    }
+    lines
+}
+
+fn policy_lines(policy: &PolicySummary) -> Vec<(&'static str, String)> {
+    let version = |acted: &VersionSummary| {
+        format!("{} {}, ticks {} to {}", acted.version, &acted.sha256[..12], acted.from_tick, acted.to_tick)
+    };
+    let (versions, speed) = (policy.versions.iter().map(version), &policy.inference);
+    let mut lines = vec![
+        ("policy", format!("{} ({})", policy.source.display(), versions.collect::<Vec<_>>().join("; "))),
+        ("inference", format!("p50 {:.0} us, p99 {:.0} us", speed.p50_us, speed.p99_us)),
+        (
+            "answers",
+            format!(
+                "{} in time, {} late (horizons held {} ticks, default {} ticks)",
+                policy.answered, policy.late, policy.held, policy.default_used
+            ),
+        ),
+    ];
+    if let Some(shadow) = &policy.shadow {
+        let share = 100.0 * shadow.differing as f64 / shadow.compared.max(1) as f64;
+        let value = format!(
+            "differs in {share:.1} % of {} horizons, by {:.2} steps on average, at most {}",
+            shadow.compared, shadow.mean_distance, shadow.max_distance
+        );
+        lines.push(("shadow", value));
+    }
+    lines
+}
+
+fn arrived(summary: &Summary) -> usize {
+    summary.run.robots.iter().filter(|robot| robot.arrived_tick.is_some()).count()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use coordinator::record::samples;
+    use coordinator::summary::Timings;
+    use coordinator::tick_parts::TickTimes;
+    use shared::messages::Stamps;
+    use vodca::metrics::RunMetrics;
+    use vodca::params::Params;
+
+    const STAMPS: Stamps =
+        Stamps { announced: 0, woken: 40_000, read: 50_000, planned: 60_000, reported: 67_000, collected: 99_000 };
+
+    fn summary() -> Summary {
+        let (scenario, params) = (samples::scenario(2), Params::safe());
+        let (mut metrics, mut timings) = (RunMetrics::new(&scenario, &params), Timings::new(2));
+        for tick in 0..3 {
+            let steps = samples::steps(2, tick);
+            metrics.observe(tick, &steps);
+            timings.observe(&TickTimes { duration_ns: 150_000, stamps: &[STAMPS; 2], ..TickTimes::default() }, &steps);
+        }
+        Summary::new(&scenario, &params, ("safe", "fixed:3"), End::OutOfTicks, metrics.finish(), &timings)
+    }
+
+    #[test]
+    fn columns_stand_under_their_names() {
+        let text = report(&summary(), Path::new("runs/x"));
+        let lines: Vec<&str> = text.lines().collect();
+        assert!(lines[0].starts_with("robot  name  arrived  path m  straight m  activations"), "{text}");
+        assert_eq!(lines[0].find("path m").map(|at| at + 6), lines[1].find("0.91").map(|at| at + 4), "{text}");
+        assert!(lines[1].ends_with("0.4     0.4"), "{text}");
+    }
+
+    #[test]
+    fn the_summary_says_why_it_failed_and_where_the_record_is() {
+        let text = report(&summary(), Path::new("runs/x"));
+        for part in [
+            "success         no: 0 of 2 arrived in time",
+            "ticks           3",
+            "folder          runs/x",
+            "p50 150 us",
+            "wake 40.0, read 10.0,",
+            "collect 32.0 us",
+        ] {
+            assert!(text.contains(part), "{part}\n{text}");
+        }
+    }
+
+    #[test]
+    fn the_json_holds_what_readers_look_for_and_reads_back() {
+        let summary = summary();
+        let json = serde_json::to_value(&summary).unwrap();
+        for name in [
+            "success",
+            "ticks",
+            "completion_time",
+            "path_cost",
+            "path_ratio",
+            "min_separation",
+            "ticks_below_min_separation",
+            "collisions",
+            "activations",
+            "solver_levels",
+            "tick_parts",
+            "robots",
+            "version",
+        ] {
+            assert!(json.get(name).is_some(), "{name}");
+        }
+        assert_eq!(serde_json::from_value::<Summary>(json).unwrap(), summary);
+    }
+}

@@ -1,0 +1,84 @@
+//! One way from a process to another and back: iceoryx2 beside the floors, in the same run.
+
+use super::links::{End, Link, LinkKind, Message, link};
+use super::partner::{Partner, PartnerArgs};
+use super::row::{Results, Row};
+use super::{BenchError, Extent};
+use coordinator::latency::Latency;
+use shared::os;
+use shared::place::Place;
+
+/// Passes over all links: what disturbs one for a while shall not spoil one link alone.
+const PASSES: usize = 4;
+
+/// Measures every link.
+pub(super) fn run(extent: &Extent<'_>, results: &mut Results) -> Result<(), BenchError> {
+    let rounds = extent.pick(5_000, 20);
+    let mut found: Vec<Latency> = LinkKind::ALL.iter().map(|_| Latency::new()).collect();
+    extent.tell("hop", PASSES * LinkKind::ALL.len());
+    for _ in 0..PASSES {
+        for ((kind, _), latency) in LinkKind::ALL.into_iter().zip(&mut found) {
+            measure(kind, rounds, latency)?;
+            extent.advance()?;
+        }
+    }
+    let p50 = |kind| {
+        let at = LinkKind::ALL.iter().position(|(other, _)| *other == kind);
+        at.map(|at| found[at].percentiles().p50_us)
+    };
+    for ((kind, name), latency) in LinkKind::ALL.into_iter().zip(&found) {
+        results.row(Row::new("hop", name, None, latency.clone()).over(p50(kind.floor())));
+    }
+    Ok(())
+}
+
+fn measure(kind: LinkKind, rounds: u64, latency: &mut Latency) -> Result<(), BenchError> {
+    let place = OwnedPlace::create()?;
+    let (mut link, events) = link(kind, &place.0, End::First)?;
+    let Place { prefix, root } = place.0.clone();
+    let partner = Partner::start(PartnerArgs::Hop { link: kind, prefix, root, events: events.to_vec() })?;
+    // The partner speaks first: whatever opening took is over then.
+    link.receive()?;
+    let warm_up = rounds / 10;
+    for round in 0..warm_up + rounds {
+        link.send(Message { stamp: os::now_ns(), ..Message::default() })?;
+        let answer = link.receive()?;
+        let back = os::now_ns().saturating_sub(answer.stamp);
+        if round >= warm_up {
+            latency.record_ns(answer.one_way);
+            latency.record_ns(back);
+        }
+    }
+    link.send(Message { last: 1, ..Message::default() })?;
+    partner.wait()
+}
+
+/// The other end: answers every message, with how long it took.
+pub(super) fn answer(link: &mut dyn Link) -> Result<(), BenchError> {
+    link.send(Message::default())?;
+    loop {
+        let message = link.receive()?;
+        let now = os::now_ns();
+        if message.last == 1 {
+            return Ok(());
+        }
+        let one_way = now.saturating_sub(message.stamp);
+        link.send(Message { stamp: os::now_ns(), one_way, last: 0 })?;
+    }
+}
+
+/// Shared files of a measurement, deleted when dropped.
+pub(super) struct OwnedPlace(pub(super) Place);
+
+impl OwnedPlace {
+    /// A place of this process.
+    pub(super) fn create() -> Result<Self, BenchError> {
+        Ok(Self(Place::create()?))
+    }
+}
+
+impl Drop for OwnedPlace {
+    fn drop(&mut self) {
+        self.0.remove();
+    }
+}

@@ -1,0 +1,145 @@
+//! Detection: where two predictions, or a prediction and an obstacle, come too close.
+
+use crate::Position;
+use crate::prediction::Prediction;
+
+/// Distances below this have no direction, m.
+pub const NO_DIRECTION: f64 = 1e-9;
+
+/// What a hazard is expected to do.
+#[derive(Clone, Copy, Debug)]
+pub enum Course<'a> {
+    /// A neighbour follows its plan x^_j[l|k-1] as far as it reaches. A plan that is `age` ticks older
+    /// than k - 1 is shifted: the neighbour is expected to stay where it ends.
+    Plan {
+        /// The newest plan heard.
+        plan: &'a Prediction,
+        /// Ticks by which it is late; 0 in an undisturbed run.
+        age: usize,
+    },
+    /// It walks straight from a place to another with `stride` metres per step on its largest axis
+    /// (a neighbour's wish, safe.md rule 3).
+    Wish {
+        /// Present position, m.
+        from: Position,
+        /// Set-point, m.
+        to: Position,
+        /// Largest move per step and axis, m: h times the largest speed.
+        stride: f64,
+    },
+    /// It stays (an obstacle).
+    Still(Position),
+}
+
+/// A neighbour or an obstacle: what a robot must keep away from.
+#[derive(Clone, Copy, Debug)]
+pub struct Hazard<'a> {
+    /// Where it will be.
+    pub course: Course<'a>,
+    /// Separation owed to it, m (r_min plus radii beyond r_min / 2 plus clearance).
+    pub separation: f64,
+}
+
+impl Hazard<'_> {
+    /// Where the hazard is at prediction step `step` of the plans of tick k - 1; `None` beyond its plan.
+    pub fn at(&self, step: usize) -> Option<Position> {
+        match self.course {
+            Course::Plan { plan, age } => {
+                let last = plan.horizon().steps();
+                (step <= last).then(|| plan.state(step.saturating_add(age).min(last)))
+            }
+            Course::Wish { from, to, stride } => Some(toward(from, to, stride * step as f64)),
+            Course::Still(position) => Some(position),
+        }
+    }
+}
+
+/// The point reached from `from` towards `to` when the largest axis has moved `reach` metres;
+/// `to` once it is within reach.
+pub fn toward(from: Position, to: Position, reach: f64) -> Position {
+    let way = to - from;
+    let largest = way.x.abs().max(way.y.abs());
+    if largest <= reach { to } else { from + way * (reach / largest) }
+}
+
+/// A conflict: the first compared step at which the distance is below the separation owed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Conflict {
+    /// k_c, prediction step of the plans of tick k - 1.
+    pub step: usize,
+    /// d, m.
+    pub distance: f64,
+    /// Own x^_i[k_c|k-1], m.
+    pub own: Position,
+    /// The hazard's place at k_c, m.
+    pub hazard: Position,
+    /// Separation owed to the hazard, m.
+    pub separation: f64,
+}
+
+/// Finds the first step in `from_step..=last_step` at which `plan` comes closer to `hazard` than the
+/// separation owed to it.
+///
+/// `plan` is this robot's own prediction of tick k - 1. Horizons may differ: only the steps that both
+/// sides predict are compared (N_min of the paper). `None` when no step conflicts.
+pub fn first_conflict(plan: &Prediction, hazard: &Hazard<'_>, from_step: usize, last_step: usize) -> Option<Conflict> {
+    let last_step = last_step.min(plan.horizon().steps());
+    for step in from_step..=last_step {
+        let (own, other) = (plan.state(step), hazard.at(step)?);
+        let distance = (own - other).norm();
+        if distance < hazard.separation {
+            return Some(Conflict { step, distance, own, hazard: other, separation: hazard.separation });
+        }
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn line(from: f64, step: f64, horizon: usize) -> Prediction {
+        let states: Vec<Position> = (0..=horizon).map(|l| Position::new(from + step * l as f64, 0.0)).collect();
+        Prediction::from_states(&states, Position::zeros())
+    }
+
+    #[test]
+    fn only_steps_that_both_predict_are_compared() {
+        let (own, other) = (line(0.0, 0.3, 20), line(6.0, -0.3, 20));
+        let hazard = Hazard { course: Course::Plan { plan: &other, age: 0 }, separation: 1.5 };
+        let conflict = first_conflict(&own, &hazard, 1, 49).unwrap();
+        assert_eq!(conflict.step, 8);
+        assert!((conflict.distance - 1.2).abs() < 1e-12);
+        let short = line(6.0, -0.3, 7);
+        assert_eq!(
+            first_conflict(&own, &Hazard { course: Course::Plan { plan: &short, age: 0 }, separation: 1.5 }, 1, 49),
+            None
+        );
+        assert_eq!(first_conflict(&line(0.0, 0.3, 7), &hazard, 1, 49), None);
+        assert_eq!(first_conflict(&own, &hazard, 1, 7), None);
+    }
+
+    #[test]
+    fn a_late_plan_is_shifted_and_ends_where_it_ended() {
+        let plan = line(0.0, 1.0, 3);
+        let late = |step| Hazard { course: Course::Plan { plan: &plan, age: 2 }, separation: 1.0 }.at(step);
+        assert_eq!(late(1), Some(Position::new(3.0, 0.0)));
+        assert_eq!(late(3), Some(Position::new(3.0, 0.0)));
+        assert_eq!(late(4), None);
+    }
+
+    #[test]
+    fn the_separation_itself_is_no_conflict() {
+        let still = Hazard { course: Course::Still(Position::new(0.0, 1.5)), separation: 1.5 };
+        assert_eq!(first_conflict(&line(0.0, 0.0, 3), &still, 1, 3), None);
+    }
+
+    #[test]
+    fn a_wish_ends_at_the_set_point() {
+        let (from, to) = (Position::zeros(), Position::new(1.0, -0.5));
+        let wish = Hazard { course: Course::Wish { from, to, stride: 0.3 }, separation: 1.0 };
+        assert!((wish.at(1).unwrap() - Position::new(0.3, -0.15)).norm() < 1e-15);
+        assert_eq!(wish.at(4), Some(to));
+        assert_eq!(toward(to, to, 0.0), to);
+    }
+}

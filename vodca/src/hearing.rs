@@ -1,0 +1,161 @@
+//! What a robot hears of the others, disturbed on purpose where the parameters say so (safe.md,
+//! section 3). Draws depend on seed, tick, sender and listener only.
+
+use crate::Position;
+use crate::controller::Neighbour;
+use crate::params::Disturbance;
+use crate::prediction::Prediction;
+use crate::random::{self, Use};
+use crate::scenario::Scenario;
+
+/// The ears of one robot.
+#[derive(Clone, Debug)]
+pub struct Hearing {
+    listener: usize,
+    seed: u64,
+    disturbance: Disturbance,
+    neighbours: Vec<Neighbour>,
+    /// Plans under way, `plan_delay` per sender, oldest first from `tick % plan_delay`.
+    under_way: Vec<Option<(u64, Prediction)>>,
+}
+
+impl Hearing {
+    /// What `listener` knows before tick 0: the starts of the scenario.
+    pub fn new(listener: usize, scenario: &Scenario, disturbance: &Disturbance, seed: u64) -> Self {
+        let robots = &scenario.robots;
+        Self {
+            listener,
+            seed,
+            disturbance: disturbance.clone(),
+            neighbours: robots.iter().map(|robot| Neighbour::at_start(robot.start, robot.set_point)).collect(),
+            under_way: vec![None; robots.len() * disturbance.plan_delay],
+        }
+    }
+
+    /// All robots by number, as [`crate::controller::View`] wants them.
+    pub fn neighbours(&self) -> &[Neighbour] {
+        &self.neighbours
+    }
+
+    /// Takes the plan that robot `sender` computed at `tick`.
+    pub fn hear(&mut self, tick: u64, sender: usize, plan: &Prediction) {
+        let Disturbance { plan_delay, plan_loss, position_loss, .. } = self.disturbance;
+        let lost = sender != self.listener && self.is_lost(position_loss, tick, sender, 0);
+        if !lost {
+            let neighbour = &mut self.neighbours[sender];
+            neighbour.present = Some((tick + 1, plan.state(1)));
+            neighbour.set_point = plan.set_point;
+        }
+        let news = !lost && !self.is_lost(plan_loss, tick, sender, 1);
+        if plan_delay == 0 {
+            match &mut self.neighbours[sender].plan {
+                _ if !news => {}
+                Some((at, held)) => {
+                    *at = tick;
+                    held.clone_from(plan);
+                }
+                none => *none = Some((tick, plan.clone())),
+            }
+            return;
+        }
+        // What is under way moves on even when this message is lost: otherwise a plan would stay in its
+        // slot and arrive after newer ones.
+        let slot = sender * plan_delay + (tick as usize) % plan_delay;
+        let arrived = std::mem::replace(&mut self.under_way[slot], news.then(|| (tick, plan.clone())));
+        if arrived.is_some() {
+            self.neighbours[sender].plan = arrived;
+        }
+    }
+
+    fn is_lost(&self, share: f64, tick: u64, sender: usize, what: u64) -> bool {
+        if share == 0.0 {
+            return false;
+        }
+        let pair = (sender as u64) << 32 | (self.listener as u64) << 1 | what;
+        random::unit(&mut random::stream(self.seed, Use::Loss, pair, tick)) < share
+    }
+}
+
+/// The position that `robot` measures at `tick`, m: `position` plus a draw from a disc of radius `noise`.
+pub fn measured(position: Position, noise: f64, seed: u64, robot: usize, tick: u64) -> Position {
+    position + in_disc(noise, seed, Use::Noise, robot, tick)
+}
+
+/// A draw from a disc of radius `radius` around the origin; nothing is drawn where it is 0.
+pub(crate) fn in_disc(radius: f64, seed: u64, purpose: Use, robot: usize, tick: u64) -> Position {
+    if radius == 0.0 {
+        return Position::zeros();
+    }
+    let mut generator = random::stream(seed, purpose, robot as u64, tick);
+    let length = radius * random::unit(&mut generator).sqrt();
+    let (sin, cos) = (std::f64::consts::TAU * random::unit(&mut generator)).sin_cos();
+    Position::new(cos, sin) * length
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn hearing(disturbance: Disturbance) -> Hearing {
+        let scenario = Scenario::resolve(Some("two_setpoint"), None).unwrap();
+        Hearing::new(0, &scenario, &disturbance, 1)
+    }
+
+    fn plan(x: f64) -> Prediction {
+        Prediction::from_states(&[Position::new(x, 0.0), Position::new(x + 1.0, 0.0)], Position::zeros())
+    }
+
+    const CALM: Disturbance = Disturbance { noise: 0.0, plan_delay: 0, plan_loss: 0.0, position_loss: 0.0 };
+
+    #[test]
+    fn late_plans_come_in_order_and_positions_at_once() {
+        let mut hearing = hearing(Disturbance { plan_delay: 2, ..CALM });
+        for tick in 0..5 {
+            hearing.hear(tick, 1, &plan(tick as f64));
+            assert_eq!(hearing.neighbours()[1].present, Some((tick + 1, Position::new(tick as f64 + 1.0, 0.0))));
+            let heard = hearing.neighbours()[1].plan.as_ref().map(|(at, _)| *at);
+            assert_eq!(heard, tick.checked_sub(2));
+        }
+    }
+
+    #[test]
+    fn lost_messages_neither_hold_late_plans_up_nor_bring_old_ones_back() {
+        for (plan_delay, plan_loss) in [(1, 0.0), (3, 0.0), (3, 0.4)] {
+            let mut hearing = hearing(Disturbance { plan_delay, plan_loss, position_loss: 0.4, ..CALM });
+            let arrives =
+                |hearing: &Hearing, tick| !hearing.is_lost(0.4, tick, 1, 0) && !hearing.is_lost(plan_loss, tick, 1, 1);
+            let (mut due, mut lost) = (None, 0);
+            for tick in 0..500 {
+                hearing.hear(tick, 1, &plan(tick as f64));
+                let sent = tick.checked_sub(plan_delay as u64);
+                let news = sent.filter(|&sent| arrives(&hearing, sent));
+                lost += u32::from(sent.is_some() && news.is_none());
+                due = news.or(due);
+                let (at, heard) = hearing.neighbours()[1].plan.clone().unzip();
+                assert_eq!(at, due, "delay {plan_delay}, tick {tick}");
+                assert_eq!(heard.map(|plan| plan.state(0).x), due.map(|due| due as f64));
+            }
+            assert!(lost > 100, "{lost} of 500 were lost");
+        }
+    }
+
+    #[test]
+    fn the_stated_share_is_lost_and_own_messages_never() {
+        let mut hearing = hearing(Disturbance { position_loss: 0.3, ..CALM });
+        let mut heard = 0;
+        for tick in 0..2000 {
+            hearing.hear(tick, 1, &plan(0.0));
+            heard += u64::from(hearing.neighbours()[1].present.unwrap().0 == tick + 1);
+            hearing.hear(tick, 0, &plan(0.0));
+            assert_eq!(hearing.neighbours()[0].present.unwrap().0, tick + 1);
+        }
+        assert!((1300..1500).contains(&heard), "{heard} of 2000");
+    }
+
+    #[test]
+    fn measuring_errors_stay_within_their_bound() {
+        let errors: Vec<f64> = (0..500).map(|tick| measured(Position::zeros(), 0.02, 3, 1, tick).norm()).collect();
+        assert!(errors.iter().all(|&error| error <= 0.02) && errors.iter().any(|&error| error > 0.015));
+        assert_eq!(measured(Position::new(1.0, 2.0), 0.0, 3, 1, 0), Position::new(1.0, 2.0));
+    }
+}

@@ -1,0 +1,293 @@
+//! Variable-horizon MPC with VODCA: one robot, one tick. Profiles are switches of this one controller.
+
+use crate::conflict::back_off;
+use crate::conflict::memory::ConflictMemory;
+use crate::conflict::rows::collision_rows;
+use crate::conflict::traffic::{Traffic, Walk};
+use crate::conflict::{Course, Hazard};
+use crate::controller::{Controller, Decision, Neighbour, View};
+use crate::horizon::Horizon;
+use crate::layout::Layout;
+use crate::mpc::cross_check::Comparison;
+use crate::mpc::ladder::Ladder;
+use crate::mpc::problem::{Plan, Problem, Row, SlackPrice, SolveError, Target};
+use crate::params::{Infeasible, Params, Reference};
+use crate::prediction::Prediction;
+use crate::reference;
+use crate::route::Route;
+use crate::safety::cell::{Cell, Present};
+use crate::safety::last_check::{TOLERANCE, is_answer, nearest_safe};
+use crate::step::{Level, Status};
+use crate::{Input, Position};
+use std::time::Instant;
+
+/// The controller of one robot.
+pub struct VodcaController {
+    robot: usize,
+    params: Params,
+    layout: Layout,
+    ladder: Ladder,
+    target: Target,
+    rows: Vec<Row>,
+    cell: Cell,
+    plan: Plan,
+    previous: Option<Previous>,
+    memory: ConflictMemory,
+    traffic: Traffic,
+}
+
+/// The robot's own plan of tick k - 1.
+struct Previous {
+    prediction: Prediction,
+    plan: Plan,
+}
+
+impl VodcaController {
+    /// The controller of `robot`; everything a tick needs is allocated here.
+    pub fn new(robot: usize, params: &Params, layout: &Layout) -> Self {
+        let robots = layout.set_points.len();
+        let hazards = robots + layout.obstacles.len();
+        let stride = params.model.sample_time * params.model.max_speed;
+        Self {
+            robot,
+            params: params.clone(),
+            layout: layout.clone(),
+            ladder: Ladder::default(),
+            target: reference::empty_target(),
+            rows: Vec::with_capacity(2 * hazards),
+            cell: Cell::with_capacity(hazards, stride),
+            plan: Plan::default(),
+            previous: None,
+            memory: ConflictMemory::default(),
+            traffic: Traffic::with_capacity(robots, &params.aim, stride),
+        }
+    }
+
+    /// Solves every QP a second time with Clarabel and compares. Allocates in every tick.
+    pub fn checked(self) -> Self {
+        Self { ladder: Ladder::checked(), ..self }
+    }
+
+    /// Rules 2 and 3: collision rows from the plans of tick k - 1. None at the first tick.
+    fn detect(&mut self, view: &View<'_>) -> usize {
+        self.rows.clear();
+        let Some(previous) = &self.previous else { return 0 };
+        let hazards = hazards(&self.params, &self.layout, self.robot, &self.memory, view);
+        let min_separation = self.params.model.min_separation;
+        let vodca = &self.params.vodca;
+        let turn = self.memory.turn(vodca);
+        collision_rows(vodca, min_separation, turn, &previous.prediction, view.horizon, hazards, &mut self.rows)
+    }
+
+    /// Rule 4: the right turn that the traffic ahead asks for, rad.
+    fn look_ahead(&mut self, view: &View<'_>) -> f64 {
+        let Self { params, layout, traffic, robot, .. } = self;
+        let Params { model, aim, .. } = &*params;
+        let own = Walk { from: view.position, to: layout.set_points[*robot] };
+        if aim.look_ahead == 0 || (own.to - own.from).norm() < aim.fade_start {
+            return 0.0;
+        }
+        traffic.clear();
+        for (other, neighbour) in view.neighbours.iter().enumerate().filter(|(other, _)| *other != *robot) {
+            if let Some((_, from)) = neighbour.present {
+                let separation = model.min_separation + layout.robot_extra[*robot] + layout.robot_extra[other];
+                traffic.add(Walk { from, to: neighbour.set_point }, separation);
+            }
+        }
+        traffic.turn(own)
+    }
+
+    /// Where to go on: to the set-point; without patience where the shortest way round the obstacles leads;
+    /// in the end anywhere.
+    fn way_on(&self, view: &View<'_>) -> Position {
+        let Self { robot, params, layout, memory, .. } = self;
+        if !memory.is_out_of_patience(&params.vodca) {
+            return layout.set_points[*robot];
+        }
+        let on = layout.routes[*robot].aim(view.position);
+        if !memory.backs_off(&params.vodca) {
+            return on;
+        }
+        back_off::aim(*robot, view.tick, view.position, on, 2.0 * params.model.min_separation)
+    }
+
+    /// Rule 1: the reference, aimed by rule 4.
+    fn aim(&mut self, view: &View<'_>) {
+        let set_point = self.way_on(view);
+        match self.params.mpc.reference {
+            Reference::SetPoint => reference::set_point(&mut self.target, set_point, view.horizon),
+            Reference::Straight => {
+                let seen = reference::aim(&self.params.aim, self.memory.aim, view.position, set_point);
+                let model = &self.params.model;
+                let (h, speed) = (model.sample_time, model.max_speed);
+                reference::straight(&mut self.target, view.position, seen, view.horizon, h, speed);
+            }
+        }
+    }
+
+    /// Rule 5: the cell of this tick from the broadcast positions.
+    fn bound_cell(&mut self, view: &View<'_>) {
+        self.cell.clear();
+        if !self.params.cell.enabled {
+            return;
+        }
+        let own = self.previous.as_ref().map_or(view.position, |previous| previous.prediction.state(1));
+        let Self { robot, layout, cell, params, .. } = self;
+        let noise = params.cell.noise_bound;
+        let escape = params.cell.escape + noise;
+        let owed = |extra: f64| params.cell.separation + 3.0 * noise + layout.robot_extra[*robot] + extra;
+        for (other, neighbour) in view.neighbours.iter().enumerate().filter(|(other, _)| other != robot) {
+            let separation = owed(layout.robot_extra[other]);
+            match neighbour.present {
+                Some((tick, position)) if tick == view.tick => {
+                    let present = Present { position, separation, moves: true };
+                    cell.keep_away(own, &present, escape, *robot < other);
+                }
+                Some((tick, last)) => cell.stay_near(own, last, separation, view.tick.saturating_sub(tick)),
+                None => cell.reach = 0.0,
+            }
+        }
+        for obstacle in &layout.obstacles {
+            let present = Present { position: obstacle.centre, separation: owed(obstacle.extra), moves: false };
+            cell.keep_away(own, &present, escape, true);
+        }
+        self.rows.extend(self.cell.as_rows(view.position));
+    }
+
+    /// The ladder, then what the method does when the hard rows admit nothing or nobody finishes.
+    fn solve(&mut self, view: &View<'_>, collision_rows: usize) -> (Level, Status) {
+        match self.run_ladder(view) {
+            Ok(level) => return (level, Status::Solved),
+            Err(SolveError::Infeasible) if self.params.vodca.infeasible == Infeasible::Hold => {
+                self.plan = Plan::default();
+                return (Level::Fallback, Status::Held);
+            }
+            Err(SolveError::Infeasible) => {
+                self.rows[..collision_rows].iter_mut().for_each(|row| row.hard = false);
+                if let Ok(level) = self.run_ladder(view) {
+                    return (level, Status::Relaxed);
+                }
+            }
+            Err(SolveError::GaveUp { .. }) => {}
+        }
+        (Level::Fallback, self.fall_back(view.horizon))
+    }
+
+    fn run_ladder(&mut self, view: &View<'_>) -> Result<Level, SolveError> {
+        let Params { model, mpc, vodca, .. } = &self.params;
+        let problem = Problem {
+            horizon: view.horizon,
+            position: view.position,
+            target: &self.target,
+            rows: &self.rows,
+            slack: SlackPrice { linear: vodca.slack_linear, quadratic: vodca.slack_quadratic },
+            sample_time: model.sample_time,
+            max_speed: model.max_speed,
+            state_weight: mpc.state_weight,
+            input_weight: mpc.input_weight,
+        };
+        self.ladder.solve(&problem, &mut self.plan)
+    }
+
+    /// No solver finished: the previous plan one step later, or standing still.
+    fn fall_back(&mut self, horizon: Horizon) -> Status {
+        self.plan = Plan::default();
+        let Some(previous) = &self.previous else { return Status::Stopped };
+        let still_planned = previous.plan.inputs.iter().skip(1).take(horizon.steps());
+        for (to, from) in self.plan.inputs.iter_mut().zip(still_planned) {
+            *to = *from;
+        }
+        Status::Shifted
+    }
+
+    /// Rule 6, then the plan that everybody sees: bounded inputs rolled out by the model, never the
+    /// solver's own states, so that state(1) is where the robot will be.
+    fn publish(&mut self, view: &View<'_>) -> (Prediction, bool) {
+        let Params { model, .. } = &self.params;
+        let inputs = &mut self.plan.inputs[..view.horizon.steps()];
+        for input in inputs.iter_mut() {
+            *input = input.map(|axis| bounded(axis, model.max_speed));
+        }
+        let mut shielded = false;
+        if self.params.cell.enabled {
+            let (step, changed) = nearest_safe(inputs[0] * model.sample_time, &self.cell);
+            if changed {
+                inputs[0] = (step / model.sample_time).map(|axis| bounded(axis, model.max_speed));
+                shielded = true;
+            }
+            debug_assert!(is_answer(inputs[0] * model.sample_time, &self.cell, 2.0 * TOLERANCE));
+        }
+        let set_point = self.layout.set_points[self.robot];
+        (Prediction::roll_out(view.position, set_point, model.sample_time, inputs), shielded)
+    }
+}
+
+/// `axis` within +-`bound`, m/s; what is not a number becomes standing still.
+fn bounded(axis: f64, bound: f64) -> f64 {
+    if axis.is_nan() { 0.0 } else { axis.clamp(-bound, bound) }
+}
+
+impl Controller for VodcaController {
+    fn tick(&mut self, view: &View<'_>) -> Decision {
+        let started = Instant::now();
+        let rows = self.detect(view);
+        let turn = self.look_ahead(view);
+        self.memory.remember(&self.params.aim, &self.params.vodca, rows, turn);
+        self.aim(view);
+        self.bound_cell(view);
+        let solving = Instant::now();
+        let detect_ns = (solving - started).as_nanos() as u64;
+        let (level, status) = self.solve(view, rows);
+        let solve_ns = solving.elapsed().as_nanos() as u64;
+        let (prediction, shielded) = self.publish(view);
+        let input: Input = self.plan.inputs[0];
+        self.previous = Some(Previous { prediction: prediction.clone(), plan: self.plan.clone() });
+        Decision { input, plan: prediction, rows: rows as u32, level, status, shielded, detect_ns, solve_ns }
+    }
+
+    fn comparison(&self) -> Option<Comparison> {
+        self.ladder.comparison()
+    }
+}
+
+/// What `robot` must keep away from in the tick of `view`: every neighbour that was heard of, then every
+/// obstacle. Asks for a tick after the first one.
+pub fn hazards<'a>(
+    params: &'a Params,
+    layout: &'a Layout,
+    robot: usize,
+    memory: &ConflictMemory,
+    view: &'a View<'a>,
+) -> impl Iterator<Item = Hazard<'a>> + Clone {
+    let way = (layout.set_points[robot] - view.position).norm();
+    let gives_way = way < params.give_way.radius || memory.is_out_of_patience(&params.vodca);
+    let owed = move |extra: f64| params.model.min_separation + layout.robot_extra[robot] + extra;
+    let others = view.neighbours.iter().enumerate().filter(move |(other, _)| *other != robot);
+    let neighbours = others.filter_map(move |(other, neighbour)| {
+        let separation = owed(layout.robot_extra[other]);
+        let wish = || wish_to_let_pass(params, way, neighbour, &layout.routes[other]);
+        if let Some(course) = gives_way.then(wish).flatten() {
+            return Some(Hazard { course, separation: separation + params.give_way.clearance });
+        }
+        let (tick, plan) = neighbour.plan.as_ref()?;
+        let age = (view.tick - 1).saturating_sub(*tick) as usize;
+        Some(Hazard { course: Course::Plan { plan, age }, separation })
+    });
+    let obstacles = layout
+        .obstacles
+        .iter()
+        .map(move |obstacle| Hazard { course: Course::Still(obstacle.centre), separation: owed(obstacle.extra) });
+    neighbours.chain(obstacles)
+}
+
+/// Rule 3: a robot near its set-point, or without patience, lets those pass that still have farther to go
+/// than its own `way` (m), by keeping away from where they wish to walk. (A plan that already avoids a
+/// parked robot shows no conflict.)
+fn wish_to_let_pass<'a>(params: &Params, way: f64, neighbour: &Neighbour, route: &Route) -> Option<Course<'a>> {
+    let (_, from) = neighbour.present?;
+    if (neighbour.set_point - from).norm() <= way {
+        return None;
+    }
+    let to = if params.vodca.patience < 1.0 { route.aim(from) } else { neighbour.set_point };
+    Some(Course::Wish { from, to, stride: params.model.sample_time * params.model.max_speed })
+}
