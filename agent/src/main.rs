@@ -1,11 +1,10 @@
 //! One robot of a team, as a process. The coordinator starts it; by hand: `agent --run DIR --robot I`.
 
-use agent::run::{Launch, run};
+use agent::run::{Launch, run, simulated};
 use clap::Parser;
 use shared::stop::StopFlag;
 use std::path::PathBuf;
 use std::process::ExitCode;
-use vodca::robot::Robot;
 
 /// One robot of a team. Everything but its number is in the folder of the run.
 #[derive(Parser)]
@@ -26,7 +25,7 @@ fn main() -> ExitCode {
     let done = StopFlag::install().map_err(anyhow::Error::from).and_then(|stop| {
         let args = Args::parse();
         let launch = Launch { run: &args.run, robot: args.robot, parent: args.parent };
-        Ok(run(launch, &stop, |setup, robot| Robot::new(robot, &setup.scenario, &setup.params, setup.team.seed))?)
+        Ok(run(launch, &stop, simulated)?)
     });
     if let Err(error) = done {
         eprintln!("error: {error}");

@@ -1,8 +1,7 @@
 //! One robot as a process: waits for ticks, hears the others, plans, moves, tells.
 //!
-//! Planning and moving are [`Robot::step`], as in the in-process [`vodca::team`]: both give the same bytes.
+//! Planning and moving are [`Robot::step`], as in a team in one process ([`vodca::team`]): both give the same bytes.
 
-use crate::horizons::Horizons;
 use shared::exchange::{self, Exchange, Order};
 use shared::messages::{Report, Stamps, kind};
 use shared::os;
@@ -10,10 +9,12 @@ use shared::services::ServiceError;
 use shared::stop::StopFlag;
 use shared::team::{FIRST_EPOCH, Setup, TeamError};
 use std::path::Path;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
+use vodca::Position;
 use vodca::hearing::Hearing;
-use vodca::horizon::Horizon;
-use vodca::horizon_source::HorizonSourceError;
+use vodca::horizon::{Horizon, MAX_HORIZON};
+use vodca::layout::Layout;
 use vodca::robot::Robot;
 use vodca::scenario::ScenarioError;
 use vodca::step::Step;
@@ -30,9 +31,6 @@ pub enum RunError {
     /// The layout of an episode.
     #[error(transparent)]
     Scenario(#[from] ScenarioError),
-    /// Where horizons come from.
-    #[error(transparent)]
-    Horizons(#[from] HorizonSourceError),
     /// There is no such robot.
     #[error("there is no robot {robot}: the team has robots 0..={last}")]
     NoSuchRobot {
@@ -52,9 +50,13 @@ pub enum RunError {
         /// Before the first tick, or after which.
         place: String,
     },
-    /// A horizon was to come with the announcement and did not.
-    #[error("no horizon for tick {tick} came with its announcement, but horizons = \"policy\" says that they do")]
+    /// What came with the announcement is no horizon.
+    #[error(
+        "no horizon in 1..={MAX_HORIZON} for robot {robot} came with the announcement of tick {tick}; is its coordinator of another version?"
+    )]
     NoHorizon {
+        /// Which robot.
+        robot: usize,
         /// k.
         tick: u64,
     },
@@ -79,14 +81,28 @@ pub struct Launch<'a> {
 
 /// What lives in a robot's process: [`Robot`], or something that fails on purpose (tests).
 pub trait Drive {
+    /// Where it measures itself at the start of the next tick, m.
+    fn measured(&self) -> Position;
+
     /// Plans tick `tick` and moves; `hearing` holds the others' plans of the tick before.
     fn step(&mut self, tick: u64, horizon: Horizon, hearing: &Hearing) -> Step;
 }
 
 impl Drive for Robot {
+    fn measured(&self) -> Position {
+        Robot::measured(self)
+    }
+
     fn step(&mut self, tick: u64, horizon: Horizon, hearing: &Hearing) -> Step {
         Robot::step(self, tick, horizon, hearing)
     }
+}
+
+/// The robot of a run with the body that the paper's model simulates: what the program `agent` runs.
+pub fn simulated(setup: &Setup, robot: usize) -> Robot {
+    let Setup { team, scenario, params } = setup;
+    let layout = Arc::new(Layout::of(scenario, params.model.min_separation));
+    Robot::new(robot, scenario, params, &layout, team.seed)
 }
 
 /// Runs one robot until the coordinator or a signal ends it; `build` makes what lives in it, anew for
@@ -105,14 +121,13 @@ pub fn run<D: Drive>(launch: Launch<'_>, stop: &StopFlag, build: impl Fn(&Setup,
     }
     let first = Episode::new(&setup, FIRST_EPOCH, robot, &build)?;
     let mut exchange = exchange::open(team.exchange, &team.place, team.robots, robot, FIRST_EPOCH)?;
-    exchange.publish(Report::presence(FIRST_EPOCH, robot, kind::READY))?;
+    exchange.publish(Report::presence(FIRST_EPOCH, robot, kind::READY, first.drive.measured()))?;
     serve(&setup, robot, exchange.as_mut(), first, &build, stop)
 }
 
 /// What a robot begins anew with every episode.
 struct Episode<D> {
     epoch: u64,
-    horizons: Horizons,
     hearing: Hearing,
     drive: D,
 }
@@ -122,7 +137,6 @@ impl<D: Drive> Episode<D> {
         let setup = setup.of_episode(epoch)?;
         Ok(Self {
             epoch,
-            horizons: Horizons::new(&setup)?,
             hearing: Hearing::new(robot, &setup.scenario, &setup.params.disturbance, setup.team.seed),
             drive: build(&setup, robot),
         })
@@ -144,14 +158,16 @@ fn serve<D: Drive>(
         let order = exchange.next_order(LOOK_AROUND, &mut |sender, tick, plan| now.hearing.hear(tick, sender, plan))?;
         match order {
             Some(Order::Stop) => break,
-            Some(Order::Meet) => exchange.publish(Report::presence(now.epoch, robot, kind::MET))?,
+            Some(Order::Meet) => {
+                exchange.publish(Report::presence(now.epoch, robot, kind::MET, now.drive.measured()))?
+            }
             Some(Order::Episode { epoch }) => {
                 now = Episode::new(setup, epoch, robot, build)?;
-                exchange.publish(Report::presence(epoch, robot, kind::MET))?;
+                exchange.publish(Report::presence(epoch, robot, kind::MET, now.drive.measured()))?;
             }
             Some(Order::Tick { tick, horizon, announced, woken }) => {
                 let read = os::now_ns();
-                let horizon = now.horizons.at(horizon, robot, tick).ok_or(RunError::NoHorizon { tick })?;
+                let horizon = horizon.ok_or(RunError::NoHorizon { robot, tick })?;
                 let step = now.drive.step(tick, horizon, &now.hearing);
                 now.hearing.hear(tick, robot, &step.plan); // read from the next tick on, like everybody's
                 let planned = os::now_ns();

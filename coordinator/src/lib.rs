@@ -2,6 +2,7 @@
 
 pub mod clock;
 pub mod guarantee;
+pub mod horizons;
 pub mod latency;
 pub mod launch;
 mod own_place;

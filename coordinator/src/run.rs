@@ -1,20 +1,28 @@
-//! What a run of a team of processes is told, what it hands out and how it can end; [`crate::team`] runs it.
+//! A run of a team of processes: what it is told, from its start to its end, and how it can end.
+//!
+//! [`crate::team`] is the team, [`crate::horizons`] chooses the horizons, [`vodca::play`] is the loop.
 
 use crate::clock::Overruns;
+use crate::horizons::RunHorizons;
 use crate::launch::{self, Agents, LaunchError};
-use crate::policy::{Acting, PolicyError, PolicyOptions, PolicySummary};
+use crate::policy::{PolicyError, PolicyOptions, PolicySummary};
 use crate::record::RecordError;
 use crate::roster::PeerLost;
+use crate::team::{Interrupt, ProcessTeam};
 use shared::exchange::Kind;
-use shared::messages::{MAX_ROBOTS, Stamps};
-use shared::place::PlaceError;
+use shared::messages::MAX_ROBOTS;
+use shared::place::{Place, PlaceError};
 use shared::services::ServiceError;
+use shared::stop::StopFlag;
 use shared::team::{Episodes, TeamError};
 use std::path::{Path, PathBuf};
-use std::time::Duration;
-use vodca::Position;
+use std::time::{Duration, Instant};
+use vodca::horizon::Horizon;
+use vodca::horizon_source::{HorizonSourceError, HorizonSpec};
+use vodca::metrics::RunMetrics;
+use vodca::params::Params;
+use vodca::play::{Ending, Halt, Limits, Observer, Playable, Tick, Verdict, play};
 use vodca::scenario::{Scenario, ScenarioError};
-use vodca::step::Step;
 
 /// The usual [`Options::tick_deadline`]: a robot that hangs ends the run within 2 s, ending included.
 pub const TICK_DEADLINE: Duration = Duration::from_millis(1200);
@@ -30,9 +38,9 @@ pub struct Options {
     pub agents: Agents,
     /// The form of the exchange.
     pub exchange: Kind,
-    /// SPEC of the horizons' source, or [`shared::team::POLICY`].
-    pub horizons: String,
-    /// The policy that chooses them; then `horizons` is [`shared::team::POLICY`].
+    /// Where horizons come from without a policy.
+    pub horizons: HorizonSpec,
+    /// The policy that chooses them instead.
     pub policy: Option<PolicyOptions>,
     /// Seed of everything random in the first episode.
     pub seed: u64,
@@ -58,7 +66,7 @@ impl Options {
             run: run.to_owned(),
             agents: Agents::Launch(launch::agent_program()?),
             exchange: Kind::default_for(scenario.robots.len()),
-            horizons: "fixed:20".into(),
+            horizons: HorizonSpec::Fixed(vec![Horizon::saturating(20)]),
             policy: None,
             seed: scenario.seed,
             episodes: Episodes::default(),
@@ -91,6 +99,9 @@ pub enum RunError {
     /// The layout of an episode.
     #[error(transparent)]
     Scenario(#[from] ScenarioError),
+    /// Where horizons come from.
+    #[error(transparent)]
+    Horizons(#[from] HorizonSourceError),
     /// The robots' program.
     #[error(transparent)]
     Launch(#[from] LaunchError),
@@ -116,7 +127,7 @@ pub enum RunError {
 /// How a run ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Outcome {
-    /// The observer had seen enough ([`Verdict::Over`]).
+    /// Everybody had arrived, or an observer had seen enough.
     Completed,
     /// All ticks were used up.
     TimedOut,
@@ -126,26 +137,28 @@ pub enum Outcome {
     PeerLost(PeerLost),
 }
 
-/// What the observer of a tick wants.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Verdict {
-    /// The next tick.
-    Continue,
-    /// The end: everybody has arrived, or the episode is over for another reason.
-    Over,
+/// How a run went.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ended {
+    /// How it ended.
+    pub outcome: Outcome,
+    /// Ticks that began late (real time only).
+    pub overruns: Overruns,
+    /// What the policy did.
+    pub policy: Option<PolicySummary>,
 }
 
-/// Sees every tick that everybody has finished and decides what comes next.
-pub type Observer<'a> = dyn FnMut(&Tick<'_>) -> Result<Verdict, RecordError> + 'a;
+/// A tick of a run, as its observers see it.
+pub type RunTick<'a> = Tick<'a, ProcessTeam, RunHorizons>;
+/// What watches a run.
+pub type RunObserver<'a> = dyn Observer<ProcessTeam, RunHorizons, Error = RecordError> + 'a;
 
-/// Plays episode after episode with one team of processes.
-pub trait Director {
+/// Plays episode after episode with one team of processes; an observer of every one of them.
+pub trait EpisodeDriver: Observer<ProcessTeam, RunHorizons, Error = RecordError> {
     /// An episode begins. Gives the SHA-256 of the policy that must act in it, if that matters.
     fn begin(&mut self, episode: &Episode<'_>) -> Result<Option<[u8; 32]>, RecordError>;
-    /// A tick that everybody has finished.
-    fn tick(&mut self, tick: &Tick<'_>) -> Result<Verdict, RecordError>;
-    /// The episode has come to its end; `true`: another one.
-    fn another(&mut self, outcome: &Outcome) -> Result<bool, RecordError>;
+    /// The episode has come to its end with these figures; `true`: another one.
+    fn another(&mut self, metrics: &RunMetrics) -> Result<bool, RecordError>;
 }
 
 /// An episode that begins.
@@ -159,43 +172,140 @@ pub struct Episode<'a> {
     pub scenario: &'a Scenario,
 }
 
-/// One tick, finished.
-#[derive(Debug)]
-pub struct Tick<'a> {
-    /// k.
-    pub tick: u64,
-    /// What every robot did, by robot number.
-    pub steps: &'a [Step],
-    /// Where every robot measured itself at the start of the tick, m.
-    pub measured: &'a [Position],
-    /// What the policy chose, in [-1, 1], by robot; empty when it chose nothing for this very tick.
-    pub actions: &'a [f32],
-    /// When what happened to every robot, by robot number.
-    pub stamps: &'a [Stamps],
-    /// When a policy was asked for the tick's horizons, ns of the monotonic clock; without a policy when
-    /// the tick could have been announced.
-    pub asked: u64,
-    /// When the tick was announced, ns of the monotonic clock.
-    pub announced: u64,
-    /// When everybody had been woken, ns.
-    pub rung: u64,
-    /// When the last report had come, ns.
-    pub collected: u64,
-    /// How late it was announced (real time only), ns.
-    pub late: u64,
-    /// Who chose the horizons, in a run with a policy.
-    pub acting: Option<Acting>,
+/// A team of processes and who chooses its horizons. Whatever happens, dropping it ends every process and deletes
+/// every shared file of the run.
+pub struct Run {
+    // Dropped in this order: the policy server and the robots before the files of both.
+    horizons: RunHorizons,
+    team: ProcessTeam,
+    stop: StopFlag,
+    until: Instant,
+    max_ticks: u64,
 }
 
-/// How a run went.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Ended {
-    /// How it ended.
-    pub outcome: Outcome,
-    /// Ticks that were finished by everybody.
-    pub ticks: u64,
-    /// Ticks that began late (real time only).
-    pub overruns: Overruns,
-    /// What the policy did.
-    pub policy: Option<PolicySummary>,
+impl Run {
+    /// Makes the exchange, starts the policy server, if there is one, and the robots. Sweeps away what earlier runs
+    /// left that were killed.
+    ///
+    /// # Errors
+    /// Whatever of this the system refuses; nothing is left behind then.
+    pub fn launch(scenario: &Scenario, params: &Params, options: Options, stop: &StopFlag) -> Result<Self, RunError> {
+        let until = Instant::now() + options.start_patience;
+        let max_ticks = options.max_ticks;
+        let (spec, policy, run) = (options.horizons.clone(), options.policy.clone(), options.run.clone());
+        let mut team = ProcessTeam::prepare(scenario, params, options, stop)?;
+        let horizons = match policy {
+            Some(policy) => RunHorizons::policy(policy, &team, &run, params.horizon.jitter, stop)?,
+            None => RunHorizons::table(&spec, scenario.robots.len(), team.seed(), params.horizon.jitter)?,
+        };
+        team.start_robots()?;
+        Ok(Self { horizons, team, stop: stop.clone(), until, max_ticks })
+    }
+
+    /// Runs until everybody has arrived, and ends the team in order whatever became of it. `metrics` are new and
+    /// hold every finished tick afterwards.
+    ///
+    /// # Errors
+    /// The run broke; a robot that was lost and a request to stop are outcomes.
+    pub fn play<'a>(
+        mut self,
+        observers: &mut [&'a mut RunObserver<'a>],
+        metrics: &mut RunMetrics,
+    ) -> Result<Ended, RunError> {
+        let limits = Limits { max_ticks: self.max_ticks, until_arrival: true };
+        let outcome = match self.gather() {
+            Ok(()) => self.episode(observers, metrics, limits),
+            Err(interrupt) => interrupt.outcome(),
+        };
+        self.end(outcome)
+    }
+
+    /// Plays episode after episode until the driver has enough or one of them does not come to its end, and ends the
+    /// team in order whatever became of it.
+    ///
+    /// # Errors
+    /// As of [`Self::play`].
+    pub fn play_episodes(mut self, driver: &mut dyn EpisodeDriver) -> Result<Ended, RunError> {
+        let outcome = match self.gather() {
+            Ok(()) => self.episodes(driver),
+            Err(interrupt) => interrupt.outcome(),
+        };
+        self.end(outcome)
+    }
+
+    /// Waits until the policy server and all robots are there.
+    fn gather(&mut self) -> Result<(), Interrupt> {
+        if !self.horizons.gather(self.until).map_err(RunError::from)? {
+            return Err(Interrupt::Stopped);
+        }
+        self.team.gather(self.until)
+    }
+
+    fn episodes(&mut self, driver: &mut dyn EpisodeDriver) -> Result<Outcome, RunError> {
+        loop {
+            let layout = self.team.episode()?;
+            let (number, seed, scenario) = (layout.number, layout.seed, &layout.scenario);
+            let wanted = driver.begin(&Episode { number, seed, scenario })?;
+            self.horizons.begin(self.team.epoch(), seed)?;
+            if let Some(wanted) = wanted
+                && !self.horizons.await_version(&wanted, self.team.measured())?
+            {
+                return Ok(Outcome::Stopped);
+            }
+            let mut metrics = RunMetrics::new(scenario, self.team.params());
+            let limits = Limits { max_ticks: self.max_ticks, until_arrival: false };
+            let outcome = self.episode(&mut [&mut Driven(&mut *driver)], &mut metrics, limits)?;
+            let came_to_its_end = matches!(outcome, Outcome::Completed | Outcome::TimedOut);
+            if !came_to_its_end || !driver.another(&metrics)? {
+                return Ok(outcome);
+            }
+            if let Err(interrupt) = self.team.next_episode() {
+                return interrupt.outcome();
+            }
+        }
+    }
+
+    fn episode<'a>(
+        &mut self,
+        observers: &mut [&'a mut RunObserver<'a>],
+        metrics: &mut RunMetrics,
+        limits: Limits,
+    ) -> Result<Outcome, RunError> {
+        match play(&mut self.team, &mut self.horizons, observers, metrics, limits) {
+            Ok(Ending::Over) => Ok(Outcome::Completed),
+            Ok(Ending::OutOfTicks) => Ok(Outcome::TimedOut),
+            Err(Halt::Team(interrupt)) => interrupt.outcome(),
+            Err(Halt::Horizons(error)) => Err(error),
+            Err(Halt::Observer(error)) => Err(error.into()),
+        }
+    }
+
+    fn end(mut self, outcome: Result<Outcome, RunError>) -> Result<Ended, RunError> {
+        let policy = self.horizons.end();
+        let told = self.team.end(outcome.as_ref().ok());
+        let outcome = outcome?; // what went wrong first is what counts
+        told?;
+        Ok(Ended { outcome, overruns: self.team.overruns(), policy: policy? })
+    }
+
+    /// Where the run's shared files are.
+    pub fn place(&self) -> &Place {
+        self.team.place()
+    }
+
+    /// Whether somebody has asked for its end.
+    pub fn is_stopped(&self) -> bool {
+        self.stop.is_set()
+    }
+}
+
+/// An episode driver as the observer that it is.
+struct Driven<'a>(&'a mut dyn EpisodeDriver);
+
+impl Observer<ProcessTeam, RunHorizons> for Driven<'_> {
+    type Error = RecordError;
+
+    fn tick(&mut self, seen: &RunTick<'_>) -> Result<Verdict, RecordError> {
+        self.0.tick(seen)
+    }
 }

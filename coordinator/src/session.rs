@@ -1,13 +1,17 @@
-//! Everything that watches a run: record, metrics, timings. Whoever produces the ticks hands them in.
+//! Everything that watches a run: record and timings.
 
+use crate::horizons::RunHorizons;
 use crate::policy::PolicySummary;
 use crate::record::latency::{self, LatencyWriter};
 use crate::record::{About, RecordError, Recorder, RunFolder};
+use crate::run::RunTick;
 use crate::summary::{End, Summary, Timings};
+use crate::team::ProcessTeam;
 use crate::tick_parts::TickTimes;
 use std::path::{Path, PathBuf};
 use vodca::metrics::RunMetrics;
 use vodca::params::Params;
+use vodca::play::{Observer, Verdict};
 use vodca::scenario::Scenario;
 use vodca::step::Step;
 
@@ -18,7 +22,6 @@ pub struct Session {
     about: About,
     recorder: Recorder,
     latency: LatencyWriter,
-    metrics: RunMetrics,
     timings: Timings,
 }
 
@@ -29,7 +32,6 @@ impl Session {
         Ok(Self {
             recorder: Recorder::start(folder, scenario, params, &about)?,
             latency: LatencyWriter::create(latency, scenario.robots.len())?,
-            metrics: RunMetrics::new(scenario, params),
             timings: Timings::new(scenario.robots.len()),
             scenario: scenario.clone(),
             params: params.clone(),
@@ -37,19 +39,15 @@ impl Session {
         })
     }
 
-    /// Takes in tick `tick`, which took `times`; `steps[i]` is what robot i did. `true`: everybody has
-    /// arrived, the run is over.
-    pub fn tick(&mut self, tick: u64, steps: &[Step], times: &TickTimes<'_>) -> Result<bool, RecordError> {
+    /// Takes in tick `tick`, which took `times`; `steps[i]` is what robot i did.
+    ///
+    /// # Errors
+    /// It cannot be written down.
+    pub fn record(&mut self, tick: u64, steps: &[Step], times: &TickTimes<'_>) -> Result<(), RecordError> {
         self.recorder.tick(tick, steps)?;
         self.latency.tick(tick, times, steps)?;
-        self.metrics.observe(tick, steps);
         self.timings.observe(times, steps);
-        Ok(self.metrics.arrived_all())
-    }
-
-    /// The figures so far.
-    pub fn metrics(&self) -> &RunMetrics {
-        &self.metrics
+        Ok(())
     }
 
     /// The run's folder.
@@ -58,13 +56,27 @@ impl Session {
     }
 
     /// Ends the record with its summary, for failed and interrupted runs as well. Gives the summary and
-    /// the folder. `policy`: what the policy did, in a run with one.
-    pub fn finish(self, end: End, policy: Option<PolicySummary>) -> Result<(Summary, PathBuf), RecordError> {
+    /// the folder. `metrics` are the run's figures, `policy` is what the policy did, in a run with one.
+    pub fn finish(
+        self,
+        end: End,
+        metrics: &RunMetrics,
+        policy: Option<PolicySummary>,
+    ) -> Result<(Summary, PathBuf), RecordError> {
         let names = (self.about.profile.as_str(), self.about.horizon.as_str());
-        let mut summary = Summary::new(&self.scenario, &self.params, names, end, self.metrics.finish(), &self.timings);
+        let mut summary = Summary::new(&self.scenario, &self.params, names, end, metrics.finish(), &self.timings);
         summary.policy = policy;
         summary.lateness = self.about.real_time.then(|| self.timings.lateness());
         let folder = self.recorder.finish(&summary)?;
         Ok((summary, folder))
+    }
+}
+
+impl Observer<ProcessTeam, RunHorizons> for Session {
+    type Error = RecordError;
+
+    fn tick(&mut self, seen: &RunTick<'_>) -> Result<Verdict, RecordError> {
+        self.record(seen.tick, seen.steps, &TickTimes::from(seen.team))?;
+        Ok(Verdict::Continue)
     }
 }

@@ -1,7 +1,7 @@
 //! Where the time of a tick goes: the stamps of every robot's report, as durations of named parts.
 
 use crate::latency::{Latency, Percentiles};
-use crate::run::Tick;
+use crate::team::{Moments, ProcessTeam};
 use shared::messages::Stamps;
 use std::collections::BTreeMap;
 use vodca::step::Step;
@@ -23,13 +23,14 @@ pub struct TickTimes<'a> {
     pub stamps: &'a [Stamps],
 }
 
-impl<'a> From<&Tick<'a>> for TickTimes<'a> {
-    fn from(tick: &Tick<'a>) -> Self {
+impl<'a> From<&'a ProcessTeam> for TickTimes<'a> {
+    fn from(team: &'a ProcessTeam) -> Self {
+        let Moments { announced, rung, collected, late, .. } = team.moments();
         Self {
-            duration_ns: tick.collected.saturating_sub(tick.announced),
-            announce_ns: tick.rung.saturating_sub(tick.announced),
-            late_ns: tick.late,
-            stamps: tick.stamps,
+            duration_ns: collected.saturating_sub(announced),
+            announce_ns: rung.saturating_sub(announced),
+            late_ns: late,
+            stamps: team.stamps(),
         }
     }
 }

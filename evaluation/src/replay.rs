@@ -1,13 +1,12 @@
 //! Repeats a recorded run from its own folder and compares it byte for byte.
 
-use crate::in_process::drive;
+use crate::in_process::drive_whole;
 use coordinator::record::{PARAMS_FILE, SCENARIO_FILE, horizons, trajectory};
 use coordinator::solver_check::SolverCheck;
 use std::path::{Path, PathBuf};
 use vodca::horizon_source::{HorizonSource, HorizonSpec};
 use vodca::params::Params;
 use vodca::scenario::Scenario;
-use vodca::step::Step;
 use vodca::team::Team;
 
 /// Why a run cannot be repeated.
@@ -87,15 +86,12 @@ pub fn repeat(folder: &Path, check: bool) -> Result<(Repetition, Option<SolverCh
         let script = HorizonSpec::Script(folder.join(horizons::FILE));
         let source = HorizonSource::new(&script, scenario.robots.len(), scenario.seed, 0)
             .map_err(|error| malformed(error.to_string()))?;
-        let append = |tick: u64, steps: &[Step]| {
+        let mut tick = 0;
+        drive_whole(&mut team, &scenario, &params, &source, |steps| {
             trajectory::push_tick(&mut text, tick, steps);
             positions.iter_mut().zip(steps).for_each(|(position, step)| *position = step.next_position);
-            Ok::<(), std::convert::Infallible>(())
-        };
-        match drive(&mut team, &scenario, &params, |robot, tick| source.horizon(robot, tick), append) {
-            Ok(_) => {}
-            Err(never) => match never {},
-        }
+            tick += 1;
+        });
     }
     let whole = recorded.len() > text.len() || recorded.ends_with(",,,,,,\n");
     if whole {

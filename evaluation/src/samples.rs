@@ -1,6 +1,6 @@
 //! Small recorded runs for tests.
 
-use vodca::horizon::Horizon;
+use vodca::horizon_source::HorizonSource;
 use vodca::scenario::Scenario;
 
 /// A real run of a team in this process, recorded in `folder`, with horizons from `random:3`.
@@ -30,11 +30,11 @@ pub(crate) fn record_ticks(folder: &std::path::Path, scenario: &str, params: &vo
     };
     let folder = RunFolder::at(folder).unwrap();
     let mut session = coordinator::session::Session::start(folder, &scenario, params, about).unwrap();
-    let horizon = |robot, tick| Horizon::random(3, robot, tick);
     let driven = Scenario { max_ticks, ..scenario.clone() };
-    crate::in_process::run_team(&driven, params, horizon, |tick, steps| {
-        session.tick(tick, steps, &TickTimes { duration_ns: 5_000, ..TickTimes::default() }).map(|_| ())
-    })
-    .unwrap();
-    session.finish(coordinator::summary::End::OutOfTicks, None).unwrap();
+    let mut horizons = HorizonSource::new(&"random:3".parse().unwrap(), scenario.robots.len(), 0, 0).unwrap();
+    let times = TickTimes { duration_ns: 5_000, ..TickTimes::default() };
+    let metrics =
+        crate::in_process::run_team(&driven, params, &mut horizons, |tick, steps| session.record(tick, steps, &times))
+            .unwrap();
+    session.finish(coordinator::summary::End::OutOfTicks, &metrics, None).unwrap();
 }

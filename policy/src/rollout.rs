@@ -1,4 +1,4 @@
-//! Recorded rollouts: transitions of whole episodes, the learner's food, one safetensors file per shard.
+//! Recorded rollouts: transitions of whole episodes, what a learner learns from, one safetensors file per shard.
 //!
 //! Rows are transitions in order of episode and tick. In Python:
 //! `safetensors.numpy.load_file("000000.safetensors")["observation"]`.
@@ -38,6 +38,9 @@ pub struct About {
 /// The schema that is written and read.
 pub const SCHEMA: &str = "vodca/rollout/1";
 
+/// [`About::horizons`] of rollouts whose horizons a policy chose.
+pub const POLICY: &str = "policy";
+
 /// One transition (s, a, r, s').
 #[derive(Clone, Copy, Debug)]
 pub struct Row<'a> {
@@ -57,7 +60,7 @@ pub struct Row<'a> {
     pub terminated: bool,
     /// Whether the episode was cut off here: there is a future, it just was not played.
     pub truncated: bool,
-    /// s', m.
+    /// s', m: `observation` of the next row of the episode.
     pub next_observation: &'a [f32],
 }
 

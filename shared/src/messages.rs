@@ -27,7 +27,7 @@ pub mod order {
 
 /// What a [`Report`] says.
 pub mod kind {
-    /// The robot has opened every service. Only `robot`, `pid` and `plan.epoch` count.
+    /// The robot has opened every service. Only `robot`, `pid`, `plan.epoch` and `next_measured` count.
     pub const READY: u32 = 1;
     /// The robot has planned `plan.tick`.
     pub const STEP: u32 = 2;
@@ -51,7 +51,7 @@ pub struct Announcement {
     pub order: u32,
     /// How many plans follow (0 in a peer exchange).
     pub plans: u32,
-    /// N_i^k by robot when a policy chose it for this very tick; 0: the robot asks its own source.
+    /// N_i^k by robot in the announcement of a tick.
     pub horizons: [u8; MAX_ROBOTS],
 }
 
@@ -106,12 +106,16 @@ pub struct Report {
     pub kind: u32,
     /// Process that sends it.
     pub pid: u32,
-    /// True position at the start of the tick, m.
+    /// Position at the start of the tick, m, as in [`Step::position`].
     pub position: [f64; 2],
+    /// Where the robot measured itself at the start of the tick, m.
+    pub measured: [f64; 2],
     /// Input applied, m/s.
     pub input: [f64; 2],
-    /// True position at the end of the tick, m.
+    /// Position at the end of the tick, m, as in [`Step::next_position`].
     pub next_position: [f64; 2],
+    /// Where the robot measures itself at the start of the next tick, m; it counts in every kind of report.
+    pub next_measured: [f64; 2],
     /// Time before the QP's solvers, ns.
     pub detect_ns: u64,
     /// Time in the QP's solvers, ns.
@@ -241,15 +245,18 @@ impl Plan {
 }
 
 impl Report {
-    /// A report of nothing but being there ([`kind::READY`], [`kind::MET`]).
-    pub fn presence(epoch: u64, robot: usize, kind: u32) -> Self {
+    /// A report of nothing but being there ([`kind::READY`], [`kind::MET`]); `measured` is where the robot
+    /// measures itself at the start of tick 0, m.
+    pub fn presence(epoch: u64, robot: usize, kind: u32, measured: Position) -> Self {
         Report {
             plan: Plan { epoch, robot: robot as u32, ..Plan::EMPTY },
             kind,
             pid: std::process::id(),
             position: [0.0; 2],
+            measured: [0.0; 2],
             input: [0.0; 2],
             next_position: [0.0; 2],
+            next_measured: measured.into(),
             detect_ns: 0,
             solve_ns: 0,
             step_ns: 0,
@@ -267,6 +274,7 @@ impl Report {
         Report {
             plan: Plan::new(epoch, tick, robot, &step.plan),
             position: step.position.into(),
+            measured: step.measured.into(),
             input: step.input.into(),
             next_position: step.next_position.into(),
             detect_ns: step.detect_ns,
@@ -277,7 +285,7 @@ impl Report {
             status: step.status as u8,
             shielded: u8::from(step.shielded),
             horizon: step.horizon.steps() as u8,
-            ..Report::presence(epoch, robot, kind::STEP)
+            ..Report::presence(epoch, robot, kind::STEP, step.next_measured)
         }
     }
 
@@ -286,8 +294,10 @@ impl Report {
         let plan = self.plan.prediction()?;
         Some(Step {
             position: Position::from(self.position),
+            measured: Position::from(self.measured),
             input: Input::from(self.input),
             next_position: Position::from(self.next_position),
+            next_measured: Position::from(self.next_measured),
             horizon: Horizon::new(u64::from(self.horizon)).ok()?,
             rows: self.rows,
             level: level(self.level)?,
@@ -321,8 +331,10 @@ mod tests {
         let states = [Position::new(1.0, -0.1), Position::new(1.1, 0.2), Position::new(1.0 / 3.0, 0.7)];
         Step {
             position: states[0],
+            measured: states[0] * 1.001,
             input: Input::new(0.5, 1.5),
             next_position: states[1],
+            next_measured: states[1] * 0.999,
             horizon: Horizon::saturating(30), // a fallback's plan is shorter than what was asked for
             rows: 3,
             level: Level::Clarabel,
@@ -364,6 +376,6 @@ mod tests {
         assert_eq!(size_of::<Observation>(), 4 * 8 + MAX_ROBOTS * 16);
         assert_eq!(size_of::<PolicyAnswer>(), 5 * 8 + 2 * 4 + 32 + 5 * MAX_ROBOTS);
         assert_eq!(size_of::<Plan>(), 3 * 8 + 2 * 4 + 16 + 50 * 16);
-        assert_eq!(size_of::<Report>(), size_of::<Plan>() + 8 + 48 + 3 * 8 + 6 * 8 + 8);
+        assert_eq!(size_of::<Report>(), size_of::<Plan>() + 8 + 80 + 3 * 8 + 6 * 8 + 8);
     }
 }

@@ -62,7 +62,7 @@ fn failed(place: &Place, what: &str, which: &str, reason: impl Debug) -> Service
 // SAFETY of these: `repr(C)`, only numbers and arrays of them, no pointers, no padding (tested).
 unsafe impl ZeroCopySend for Announcement {
     unsafe fn type_name() -> &'static str {
-        "vodca/Announcement/1"
+        "vodca/Announcement/2"
     }
 }
 unsafe impl ZeroCopySend for Plan {
@@ -72,7 +72,7 @@ unsafe impl ZeroCopySend for Plan {
 }
 unsafe impl ZeroCopySend for Report {
     unsafe fn type_name() -> &'static str {
-        "vodca/Report/2"
+        "vodca/Report/3"
     }
 }
 unsafe impl ZeroCopySend for Observation {

@@ -22,21 +22,19 @@ pub const PARAMS_FILE: &str = "params.toml";
 /// Epoch of the first episode of a run; every further one has the next number.
 pub const FIRST_EPOCH: u64 = 1;
 
-/// Value of [`TeamFile::horizons`] when a policy chooses them and they come with the announcements.
-pub const POLICY: &str = "policy";
+/// Version of the team's file.
+pub const VERSION: u32 = 2;
 
 /// How the processes of a run find and treat each other.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TeamFile {
-    /// 1.
+    /// [`VERSION`].
     pub version: u32,
     /// n, the number of robots.
     pub robots: usize,
     /// The form of the exchange.
     pub exchange: Kind,
-    /// Where horizons come from: `fixed:20`, `random:7`, `script:FILE`, or `policy` (they come with the announcements).
-    pub horizons: String,
     /// Seed of everything random in the first episode; [`random::episode_seed`] gives the others'.
     pub seed: u64,
     /// What differs between the episodes of this run.
@@ -175,8 +173,8 @@ impl Setup {
         let path = run.join(TEAM_FILE);
         let team: TeamFile = toml::from_str(&read(&path)?)
             .map_err(|error| TeamError::Malformed { path: path.clone(), message: error.to_string() })?;
-        if team.version != 1 {
-            let message = format!("version = {} is not 1: written by another release of vodca", team.version);
+        if team.version != VERSION {
+            let message = format!("version = {} is not {VERSION}: written by another release of vodca", team.version);
             return Err(TeamError::Malformed { path, message });
         }
         let scenario = Scenario::load(&run.join(SCENARIO_FILE))?;

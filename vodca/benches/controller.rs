@@ -1,10 +1,11 @@
-//! Time of the controller's parts: `cargo bench -p agent --bench controller`.
+//! Time of the controller's parts: `cargo bench -p vodca --bench controller`.
 //!
 //! The view of the robot with most rows in the middle of a run of fourteen robots around three
 //! obstacles; every measurement repeats that one tick.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use std::hint::black_box;
+use std::sync::Arc;
 use std::time::Duration;
 use vodca::Position;
 use vodca::conflict::memory::ConflictMemory;
@@ -29,7 +30,7 @@ const TICK: u64 = 25;
 struct Moment {
     scenario: Scenario,
     params: Params,
-    layout: Layout,
+    layout: Arc<Layout>,
     robot: usize,
     horizon: Horizon,
     hearing: Hearing,
@@ -41,19 +42,20 @@ impl Moment {
     fn new(profile: Profile, steps: i64) -> Self {
         let (scenario, params) = set_up(Some("ex14_d"), None, profile, &[]).expect("a built-in scenario");
         let horizon = Horizon::saturating(steps);
+        let horizons = vec![horizon; scenario.robots.len()];
         let mut team = Team::new(&scenario, &params, scenario.seed);
         let mut hearing = Hearing::new(0, &scenario, &params.disturbance, scenario.seed);
         for tick in 0..TICK - 1 {
-            for (robot, step) in team.step(|_| horizon).iter().enumerate() {
+            for (robot, step) in team.step(&horizons).iter().enumerate() {
                 hearing.hear(tick, robot, &step.plan);
             }
         }
-        let last = team.step(|_| horizon).to_vec();
+        let last = team.step(&horizons).to_vec();
         last.iter().enumerate().for_each(|(robot, step)| hearing.hear(TICK - 1, robot, &step.plan));
         let most = last.iter().enumerate().max_by_key(|(_, step)| step.rows);
         let robot = most.map_or(0, |(robot, _)| robot);
         let (position, previous) = (last[robot].next_position, last[robot].plan.clone());
-        let layout = Layout::of(&scenario, params.model.min_separation);
+        let layout = Arc::new(Layout::of(&scenario, params.model.min_separation));
         Self { scenario, params, layout, robot, horizon, hearing, position, previous }
     }
 

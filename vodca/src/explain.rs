@@ -98,7 +98,8 @@ mod tests {
             let mut team = Team::new(&scenario, &params, 0);
             let (mut rows, mut unknown) = (0, 0);
             for tick in 0..80 {
-                let steps = team.step(|robot| Horizon::random(1, robot, tick));
+                let horizons: Vec<Horizon> = (0..14).map(|robot| Horizon::random(1, robot, tick)).collect();
+                let steps = team.step(&horizons);
                 explainer.observe(tick, steps);
                 for (robot, step) in steps.iter().enumerate() {
                     rows += step.rows;

@@ -76,11 +76,6 @@ impl Hearing {
     }
 }
 
-/// The position that `robot` measures at `tick`, m: `position` plus a draw from a disc of radius `noise`.
-pub fn measured(position: Position, noise: f64, seed: u64, robot: usize, tick: u64) -> Position {
-    position + in_disc(noise, seed, Use::Noise, robot, tick)
-}
-
 /// A draw from a disc of radius `radius` around the origin; nothing is drawn where it is 0.
 pub(crate) fn in_disc(radius: f64, seed: u64, purpose: Use, robot: usize, tick: u64) -> Position {
     if radius == 0.0 {
@@ -150,12 +145,5 @@ mod tests {
             assert_eq!(hearing.neighbours()[0].present.unwrap().0, tick + 1);
         }
         assert!((1300..1500).contains(&heard), "{heard} of 2000");
-    }
-
-    #[test]
-    fn measuring_errors_stay_within_their_bound() {
-        let errors: Vec<f64> = (0..500).map(|tick| measured(Position::zeros(), 0.02, 3, 1, tick).norm()).collect();
-        assert!(errors.iter().all(|&error| error <= 0.02) && errors.iter().any(|&error| error > 0.015));
-        assert_eq!(measured(Position::new(1.0, 2.0), 0.0, 3, 1, 0), Position::new(1.0, 2.0));
     }
 }

@@ -4,7 +4,9 @@
 //! hands its answers through [`HorizonSource::jitter`], so that the jitter is the same for all. A script
 //! alone is never jittered: it says exactly what is used, so the record of a run repeats the run.
 
+use crate::Position;
 use crate::horizon::{Horizon, MAX_HORIZON};
+use std::convert::Infallible;
 use std::fmt;
 use std::fs::File;
 use std::io::{self, Read};
@@ -14,6 +16,35 @@ use std::str::FromStr;
 /// Largest script, MiB: over 100000 ticks of the largest team. A device or a pipe without an end is refused
 /// instead of filling the memory.
 const MAX_SCRIPT_MIB: u64 = 64;
+
+/// Chooses the horizons of a tick.
+pub trait Horizons {
+    /// Why there are none.
+    type Error;
+
+    /// Writes N_i^k for every robot i of tick k = `tick` into `out`; the robots measure themselves at
+    /// `measured` (m, by robot number). Called once per tick, ticks in order.
+    ///
+    /// # Errors
+    /// The run cannot go on without horizons.
+    fn choose(&mut self, tick: u64, measured: &[Position], out: &mut [Horizon]) -> Result<(), Self::Error>;
+
+    /// The raw actions in [-1, 1] that the newest horizons were made of, by robot; empty where there were none.
+    fn actions(&self) -> &[f32] {
+        &[]
+    }
+}
+
+impl Horizons for HorizonSource {
+    type Error = Infallible;
+
+    fn choose(&mut self, tick: u64, _: &[Position], out: &mut [Horizon]) -> Result<(), Infallible> {
+        for (robot, to) in out.iter_mut().enumerate() {
+            *to = self.horizon(robot, tick);
+        }
+        Ok(())
+    }
+}
 
 /// What the user asked for, `--horizon SPEC`.
 #[derive(Clone, Debug, PartialEq, Eq)]

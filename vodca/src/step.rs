@@ -43,12 +43,16 @@ pub enum Status {
 /// What one robot did in one tick.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Step {
-    /// True position at the start of the tick, m.
+    /// Position at the start of the tick, m: the true one, of a body in the world the measured one.
     pub position: Position,
+    /// Where the robot measured itself at the start of the tick, m: what it planned from.
+    pub measured: Position,
     /// Input applied during the tick, m/s.
     pub input: Input,
-    /// True position at the end of the tick, m: position + h input.
+    /// Position at the end of the tick, m, like `position`; of a simulated body `position + h input`.
     pub next_position: Position,
+    /// Where the robot measures itself at the start of the next tick, m: what it will plan from.
+    pub next_measured: Position,
     /// N_i^k.
     pub horizon: Horizon,
     /// Collision rows of the QP (soft or hard VODCA rows; cell rows are not counted).

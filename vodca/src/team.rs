@@ -1,13 +1,18 @@
 //! All robots of a team in one process: the same controllers, the same exchange by tick number, no
 //! processes. Golden tests, sweeps and replays stand on it; agent processes give the same bytes.
 
+use crate::Position;
 use crate::hearing::Hearing;
 use crate::horizon::Horizon;
+use crate::layout::Layout;
 use crate::mpc::cross_check::Comparison;
 use crate::params::{Disturbance, Params};
+use crate::play::Playable;
 use crate::robot::Robot;
 use crate::scenario::Scenario;
 use crate::step::Step;
+use std::convert::Infallible;
+use std::sync::Arc;
 
 /// A team in one process.
 pub struct Team {
@@ -15,50 +20,65 @@ pub struct Team {
     /// One for all, or one each where messages get lost between some and not others.
     hearing: Vec<Hearing>,
     steps: Vec<Step>,
+    measured: Vec<Position>,
     tick: u64,
 }
 
 impl Team {
     /// A team at its start positions, before tick 0. `seed` feeds the disturbances.
     pub fn new(scenario: &Scenario, params: &Params, seed: u64) -> Self {
-        Self::of(Robot::new, scenario, params, seed)
+        Self::built(Robot::new, scenario, params, seed)
     }
 
     /// The same team, solving every QP a second time with Clarabel (see [`Self::comparison`]).
     pub fn checked(scenario: &Scenario, params: &Params, seed: u64) -> Self {
-        Self::of(Robot::checked, scenario, params, seed)
+        Self::built(Robot::checked, scenario, params, seed)
     }
 
-    fn of(
-        build: impl Fn(usize, &Scenario, &Params, u64) -> Robot,
+    fn built(
+        build: impl Fn(usize, &Scenario, &Params, &Arc<Layout>, u64) -> Robot,
         scenario: &Scenario,
         params: &Params,
         seed: u64,
     ) -> Self {
-        let robots = scenario.robots.len();
+        let layout = Arc::new(Layout::of(scenario, params.model.min_separation));
+        let robots = (0..scenario.robots.len()).map(|robot| build(robot, scenario, params, &layout, seed)).collect();
+        Self::of(robots, scenario, params, seed)
+    }
+
+    /// A team of `robots` with bodies and controllers of any kind, by robot number, before tick 0; what they
+    /// hear of each other is disturbed as `params` say.
+    pub fn of(robots: Vec<Robot>, scenario: &Scenario, params: &Params, seed: u64) -> Self {
         let Disturbance { plan_loss, position_loss, .. } = params.disturbance;
-        let ears = if plan_loss + position_loss > 0.0 { robots } else { 1 };
+        let listeners = if plan_loss + position_loss > 0.0 { robots.len() } else { 1 };
         Self {
-            robots: (0..robots).map(|robot| build(robot, scenario, params, seed)).collect(),
-            hearing: (0..ears).map(|robot| Hearing::new(robot, scenario, &params.disturbance, seed)).collect(),
-            steps: Vec::with_capacity(robots),
+            hearing: (0..listeners).map(|robot| Hearing::new(robot, scenario, &params.disturbance, seed)).collect(),
+            steps: Vec::with_capacity(robots.len()),
+            measured: robots.iter().map(Robot::measured).collect(),
+            robots,
             tick: 0,
         }
     }
 
     /// Runs one tick with a horizon for every robot and tells what each did, by robot number.
-    pub fn step(&mut self, horizons: impl Fn(usize) -> Horizon) -> &[Step] {
+    pub fn step(&mut self, horizons: &[Horizon]) -> &[Step] {
         self.steps.clear();
-        for (index, robot) in self.robots.iter_mut().enumerate() {
-            let ears = self.hearing.get(index).unwrap_or(&self.hearing[0]);
-            self.steps.push(robot.step(self.tick, horizons(index), ears));
+        for (index, (robot, &horizon)) in self.robots.iter_mut().zip(horizons).enumerate() {
+            let hearing = self.hearing.get(index).unwrap_or(&self.hearing[0]);
+            self.steps.push(robot.step(self.tick, horizon, hearing));
         }
         // Jacobi: only now, when everybody has planned, is anybody's plan heard.
         for (robot, step) in self.steps.iter().enumerate() {
-            self.hearing.iter_mut().for_each(|ears| ears.hear(self.tick, robot, &step.plan));
+            self.hearing.iter_mut().for_each(|hearing| hearing.hear(self.tick, robot, &step.plan));
+            self.measured[robot] = step.next_measured;
         }
         self.tick += 1;
         &self.steps
+    }
+
+    /// Where every robot measures itself at the start of the next tick, m, by robot number.
+    pub fn measured(&self) -> &[Position] {
+        &self.measured
     }
 
     /// What solving every QP twice has found, over all robots; `None` unless [`Self::checked`] built this
@@ -73,5 +93,22 @@ impl Team {
     /// The next tick to run.
     pub fn tick(&self) -> u64 {
         self.tick
+    }
+}
+
+impl Playable for Team {
+    type Error = Infallible;
+
+    fn measured(&self) -> &[Position] {
+        &self.measured
+    }
+
+    fn tick(&mut self, _: u64, horizons: &[Horizon]) -> Result<(), Infallible> {
+        self.step(horizons);
+        Ok(())
+    }
+
+    fn steps(&self) -> &[Step] {
+        &self.steps
     }
 }

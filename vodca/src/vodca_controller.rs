@@ -19,13 +19,14 @@ use crate::safety::cell::{Cell, Present};
 use crate::safety::last_check::{TOLERANCE, is_answer, nearest_safe};
 use crate::step::{Level, Status};
 use crate::{Input, Position};
+use std::sync::Arc;
 use std::time::Instant;
 
 /// The controller of one robot.
 pub struct VodcaController {
     robot: usize,
     params: Params,
-    layout: Layout,
+    layout: Arc<Layout>,
     ladder: Ladder,
     target: Target,
     rows: Vec<Row>,
@@ -44,7 +45,7 @@ struct Previous {
 
 impl VodcaController {
     /// The controller of `robot`; everything a tick needs is allocated here.
-    pub fn new(robot: usize, params: &Params, layout: &Layout) -> Self {
+    pub fn new(robot: usize, params: &Params, layout: &Arc<Layout>) -> Self {
         let robots = layout.set_points.len();
         let hazards = robots + layout.obstacles.len();
         let stride = params.model.sample_time * params.model.max_speed;

@@ -103,12 +103,14 @@ fn a_steady_tick_of_all_robots_allocates_nothing() {
         let mut team = Team::new(&scenario, &params, 0);
         let mut solved = 0;
         // Buffers reach their size in the first ticks.
+        let mut horizons = vec![Horizon::MAX; scenario.robots.len()];
         (0..5).for_each(|_| {
-            team.step(|_| Horizon::MAX);
+            team.step(&horizons);
         });
         let before = ALLOCATIONS.get();
         for tick in 5..80 {
-            let steps = team.step(|robot| Horizon::random(1, robot, tick));
+            horizons.iter_mut().enumerate().for_each(|(robot, to)| *to = Horizon::random(1, robot, tick));
+            let steps = team.step(&horizons);
             solved += steps.iter().filter(|step| step.rows > 0).count();
         }
         assert_eq!(ALLOCATIONS.get() - before, 0, "{} {profile}", scenario.name);

@@ -47,7 +47,9 @@ fn least_separation(scenario: &Scenario, params: &Params) -> f64 {
     let mut metrics = RunMetrics::new(scenario, params);
     let mut team = Team::new(scenario, params, scenario.seed);
     for tick in 0..scenario.max_ticks {
-        let steps = team.step(|robot| Horizon::random(scenario.seed, robot, tick));
+        let random = |robot| Horizon::random(scenario.seed, robot, tick);
+        let horizons: Vec<Horizon> = (0..scenario.robots.len()).map(random).collect();
+        let steps = team.step(&horizons);
         metrics.observe(tick, steps);
     }
     metrics.min_separation()

@@ -15,10 +15,12 @@ fn arrives(name: &str, fixed: Option<u64>, seed: u64, sets: &[&str]) -> bool {
     let mut team = Team::new(&scenario, &params, seed);
     let mut metrics = RunMetrics::new(&scenario, &params);
     for tick in 0..scenario.max_ticks {
-        let steps = team.step(|robot| {
+        let horizon = |robot| {
             let base = fixed.map_or(Horizon::random(seed, robot, tick), |steps| Horizon::new(steps).unwrap());
             base.jittered(params.horizon.jitter, seed, robot, tick)
-        });
+        };
+        let horizons: Vec<Horizon> = (0..scenario.robots.len()).map(horizon).collect();
+        let steps = team.step(&horizons);
         metrics.observe(tick, steps);
         if metrics.arrived_all() {
             return true;

@@ -10,12 +10,11 @@ use coordinator::policy::PolicyOptions;
 use coordinator::record::RecordError;
 use coordinator::record::RunFolder;
 use coordinator::rollout::{Orders, Played, Recorder, Until, Written};
-use coordinator::run::{Options, Outcome};
-use coordinator::team::Team;
+use coordinator::run::{Options, Outcome, Run};
 use evaluation::text_table::TextTable;
 use policy::rollout::{About, SCHEMA};
 use shared::stop::StopFlag;
-use shared::team::{Episodes, POLICY};
+use shared::team::Episodes;
 use std::path::PathBuf;
 use std::time::Duration;
 use vodca::horizon_source::{HorizonSource, HorizonSpec};
@@ -138,8 +137,8 @@ pub fn run(args: Args) -> Ending {
     let Some(mut recorder) = Recorder::new(&params, about, orders, keep, until, &mut written) else {
         return Ok(exit::Outcome::Done);
     };
-    let team = Team::launch(&scenario, &params, options, &stop).map_err(Failure::broken)?;
-    let ended = team.play(&stop, &mut recorder).map_err(Failure::broken)?;
+    let run = Run::launch(&scenario, &params, options, &stop).map_err(Failure::broken)?;
+    let ended = run.play_episodes(&mut recorder).map_err(Failure::broken)?;
     drop(recorder);
     progress.finish();
     trouble.map_or(Ok(()), |error| Err(Failure::from(error)))?;
@@ -162,7 +161,7 @@ fn write_setup(run: &RunFolder, scenario: &Scenario, params: &Params) -> Result<
 
 fn options(args: &Args, scenario: &Scenario, run: &RunFolder, episodes: Episodes) -> Result<Options, Failure> {
     let mut options = Options::new(run.path(), scenario).map_err(Failure::broken)?;
-    options.horizons = args.horizon.to_string();
+    options.horizons = args.horizon.clone();
     options.seed = args.seed;
     options.episodes = episodes;
     options.exchange = args.exchange.map_or(options.exchange, Into::into);
@@ -172,7 +171,6 @@ fn options(args: &Args, scenario: &Scenario, run: &RunFolder, episodes: Episodes
     if let Some(policy) = &args.policy {
         let policy = args.use_policy.options(policy, scenario)?;
         options.policy = Some(PolicyOptions { record: false, ..policy });
-        options.horizons = POLICY.into();
     }
     Ok(options)
 }
@@ -183,7 +181,7 @@ fn about(args: &Args, scenario: &Scenario, policy: Option<&PolicyOptions>) -> Ab
         scenario: args.scenario.clone(),
         robots: scenario.robots.len(),
         profile: args.profile.to_string(),
-        horizons: if policy.is_some() { POLICY.into() } else { args.horizon.to_string() },
+        horizons: if policy.is_some() { policy::rollout::POLICY.into() } else { args.horizon.to_string() },
         seed: args.seed,
         start_jitter: args.start_jitter,
         max_ticks: scenario.max_ticks,

@@ -9,11 +9,9 @@ use crate::stdout;
 use coordinator::launch::{self, Agents};
 use coordinator::record::about::{Machine, Versions};
 use coordinator::record::{About, RunFolder};
-use coordinator::run::{Options, Outcome, Tick, Verdict};
+use coordinator::run::{Options, Outcome, Run, RunTick};
 use coordinator::session::Session;
 use coordinator::summary::End;
-use coordinator::team::Team;
-use coordinator::tick_parts::TickTimes;
 use coordinator::view::{Views, Wanted};
 use evaluation::page::recorded::Recorded;
 use shared::exchange::Kind;
@@ -22,7 +20,9 @@ use shared::stop::StopFlag;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 use vodca::horizon_source::{HorizonSource, HorizonSpec};
+use vodca::metrics::RunMetrics;
 use vodca::params::{Params, Profile};
+use vodca::play::Verdict;
 use vodca::scenario::{Scenario, set_up};
 
 /// Arguments of `run`.
@@ -123,7 +123,7 @@ pub fn run(args: Args) -> Ending {
     params.warnings().iter().for_each(|warning| tracing::warn!("{warning}"));
     scenario.seed = args.seed.unwrap_or(scenario.seed);
     scenario.max_ticks = args.max_ticks.unwrap_or(scenario.max_ticks);
-    // The robots ask their own sources; whether there are horizons for all is said before any starts.
+    // Whether there are horizons for all is said before anything is made.
     HorizonSource::new(&args.horizon, scenario.robots.len(), scenario.seed, params.horizon.jitter)
         .map_err(Failure::usage)?;
     let folder =
@@ -131,7 +131,6 @@ pub fn run(args: Args) -> Ending {
     let mut options = options(&args, &scenario, &folder)?;
     if let Some(policy) = &args.policy {
         options.policy = Some(args.use_policy.options(policy, &scenario)?);
-        options.horizons = shared::team::POLICY.into();
     }
     let wanted =
         Wanted { terminal: args.tui, browser: args.live, foxglove: args.foxglove, horizons: source_of_horizons(&args) };
@@ -155,7 +154,7 @@ pub fn run(args: Args) -> Ending {
 
 fn options(args: &Args, scenario: &Scenario, folder: &RunFolder) -> Result<Options, Failure> {
     let mut options = Options::new(folder.path(), scenario).map_err(Failure::broken)?;
-    options.horizons = args.horizon.to_string();
+    options.horizons = args.horizon.clone();
     options.real_time = args.real_time;
     if let Some(exchange) = args.exchange {
         options.exchange = exchange.into();
@@ -208,7 +207,7 @@ fn check_solver(folder: &Path, ending: Ending) -> Ending {
     if check.passed() { ending } else { ending.and(Ok(exit::Outcome::Failed)) }
 }
 
-/// Starts the processes, hands their ticks to the session and says how it ended.
+/// Starts the processes, lets session and views watch them and says how it ended.
 fn play(
     mut session: Session,
     mut views: Views,
@@ -219,19 +218,17 @@ fn play(
     stop: &StopFlag,
 ) -> Ending {
     let by_hand = matches!(options.agents, Agents::ByHand);
-    let team = Team::launch(scenario, params, options, stop).map_err(Failure::broken)?;
+    let run = Run::launch(scenario, params, options, stop).map_err(Failure::broken)?;
     for robot in (0..scenario.robots.len()).filter(|_| by_hand) {
         stdout::line(launch::command_line(session.path(), robot))?;
     }
-    let mut observer = |tick: &Tick<'_>| {
-        let duration = Duration::from_nanos(tick.collected.saturating_sub(tick.announced));
-        let observed = session.tick(tick.tick, tick.steps, &TickTimes::from(tick));
-        let metrics = session.metrics();
-        views.tick(tick, duration, metrics);
-        progress.tick(tick.tick + 1, metrics.arrived(), tick.steps.len(), metrics.min_separation());
-        Ok(if observed? { Verdict::Over } else { Verdict::Continue })
+    let mut told = |seen: &RunTick<'_>| {
+        let RunTick { tick, steps, metrics, .. } = *seen;
+        progress.tick(tick + 1, metrics.arrived(), steps.len(), metrics.min_separation());
+        Ok(Verdict::Continue)
     };
-    let ended = team.run(stop, &mut observer);
+    let mut metrics = RunMetrics::new(scenario, params);
+    let ended = run.play(&mut [&mut session, &mut views, &mut told], &mut metrics);
     progress.finish();
     views.close(); // the terminal first: what follows is to be read
     let ended = ended.map_err(Failure::broken)?;
@@ -241,7 +238,7 @@ fn play(
         Outcome::Stopped => End::Interrupted,
         Outcome::PeerLost(_) => End::PeerLost,
     };
-    let (summary, folder) = session.finish(end, ended.policy.clone()).map_err(Failure::broken)?;
+    let (summary, folder) = session.finish(end, &metrics, ended.policy.clone()).map_err(Failure::broken)?;
     stdout::text(report(&summary, &folder))?;
     if ended.overruns.count > 0 {
         stdout::line(format_args!(

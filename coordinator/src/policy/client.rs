@@ -13,11 +13,12 @@ use shared::os;
 use shared::place::{Place, PlaceError};
 use shared::services::{PolicyAsker, ServiceError};
 use shared::stop::StopFlag;
-use shared::team::{Episodes, FIRST_EPOCH, PARAMS_FILE, POLICY, SCENARIO_FILE, TeamError, TeamFile};
+use shared::team::{Episodes, FIRST_EPOCH, PARAMS_FILE, SCENARIO_FILE, TeamError, TeamFile, VERSION};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 use vodca::Position;
 use vodca::horizon::Horizon;
+use vodca::horizon_source::Horizons;
 use vodca::params::Params;
 use vodca::scenario::{Scenario, ScenarioError};
 
@@ -166,11 +167,17 @@ impl PolicyClient {
         begun + if self.stop.is_set() { SHORT_PATIENCE } else { PATIENCE }
     }
 
-    /// The policy's horizons (its mean, no jitter) for robots that were measured at `positions` (m), by robot.
+    /// The policy as the source of a run's horizons, moved by `params.horizon.jitter` with draws of `seed`, as in a run
+    /// of processes.
+    pub fn horizons(&mut self, params: &Params, seed: u64) -> ClientHorizons<'_> {
+        ClientHorizons { client: self, jitter: params.horizon.jitter, seed }
+    }
+
+    /// The policy's horizons (its mean, no jitter) for robots that are measured at `positions` (m), by robot.
     ///
     /// # Errors
     /// No answer for this very question, or one of another model than before.
-    pub fn choose(&mut self, tick: u64, positions: impl Iterator<Item = Position>) -> Result<&[Horizon], ClientError> {
+    fn answer(&mut self, tick: u64, positions: &[Position]) -> Result<&[Horizon], ClientError> {
         let robots = self.policy.robots;
         let mut question = Observation {
             epoch: FIRST_EPOCH,
@@ -180,7 +187,7 @@ impl PolicyClient {
             positions: [[0.0; 2]; MAX_ROBOTS],
         };
         for (to, position) in question.positions.iter_mut().zip(positions) {
-            *to = position.into();
+            *to = (*position).into();
         }
         self.asker.ask(question)?;
         let answer = self.await_answer(tick, question.stamp)?;
@@ -229,6 +236,25 @@ impl PolicyClient {
     }
 }
 
+/// See [`PolicyClient::horizons`].
+pub struct ClientHorizons<'a> {
+    client: &'a mut PolicyClient,
+    jitter: u64,
+    seed: u64,
+}
+
+impl Horizons for ClientHorizons<'_> {
+    type Error = ClientError;
+
+    fn choose(&mut self, tick: u64, measured: &[Position], out: &mut [Horizon]) -> Result<(), ClientError> {
+        let chosen = self.client.answer(tick, measured)?.iter().enumerate();
+        for (to, (robot, horizon)) in out.iter_mut().zip(chosen) {
+            *to = horizon.jittered(self.jitter, self.seed, robot, tick);
+        }
+        Ok(())
+    }
+}
+
 impl FoundPolicy {
     /// An error when `scenario` has another number of robots.
     pub fn must_fit(&self, scenario: &Scenario) -> Result<(), ClientError> {
@@ -254,10 +280,9 @@ fn tell(
     write(SCENARIO_FILE, &scenario.to_toml()?)?;
     write(PARAMS_FILE, &params.to_toml())?;
     let team = TeamFile {
-        version: 1,
+        version: VERSION,
         robots: scenario.robots.len(),
         exchange: Kind::Peer,
-        horizons: POLICY.into(),
         seed: scenario.seed,
         episodes: Episodes::default(),
         start_patience: PATIENCE.as_secs_f64(),

@@ -129,7 +129,6 @@ pub struct PolicySource {
     bridge: Bridge,
     record: Option<PolicyRecord>,
     tally: Tally,
-    horizons: Vec<Option<Horizon>>,
     /// Of the newest tick; empty when the policy did not choose its horizons.
     actions: Vec<f32>,
     acting: Option<Acting>,
@@ -153,7 +152,6 @@ impl PolicySource {
                 false => None,
             },
             tally: Tally::new(options.settings.policy.clone(), options.settings.shadow.clone()),
-            horizons: vec![None; robots],
             actions: Vec::with_capacity(robots),
             acting: None,
             options,
@@ -179,12 +177,7 @@ impl PolicySource {
     }
 
     /// The horizons of `tick`, by robot, for robots measured at `positions`.
-    pub fn choose(
-        &mut self,
-        tick: u64,
-        positions: &[Position],
-        stop: &StopFlag,
-    ) -> Result<&[Option<Horizon>], PolicyError> {
+    pub fn choose(&mut self, tick: u64, positions: &[Position], stop: &StopFlag) -> Result<&[Horizon], PolicyError> {
         let question = self.question(tick, positions);
         // What fails between the two processes is a missing answer and not the end of the run.
         let answer = match self.asker.ask(question) {
@@ -213,10 +206,7 @@ impl PolicySource {
         if let Some(record) = &mut self.record {
             record.tick(tick, source, answer.as_ref())?;
         }
-        for (to, horizon) in self.horizons.iter_mut().zip(self.bridge.horizons()) {
-            *to = Some(*horizon);
-        }
-        Ok(&self.horizons)
+        Ok(self.bridge.horizons())
     }
 
     /// What the policy chose for the newest tick, in [-1, 1], by robot; empty when it chose nothing.

@@ -33,8 +33,10 @@ pub fn steps(robots: usize, tick: u64) -> Vec<Step> {
         let position = (0..tick).fold(start, |at, _| at + input * 0.2);
         Step {
             position,
+            measured: position,
             input,
             next_position: position + input * 0.2,
+            next_measured: position + input * 0.2,
             horizon: Horizon::saturating(3),
             rows: 0,
             level: Level::ClosedForm,

@@ -4,14 +4,18 @@ mod orders;
 
 pub use orders::{Orders, Round};
 
+use crate::horizons::RunHorizons;
 use crate::record::RecordError;
-use crate::run::{Director, Episode, Outcome, Tick, Verdict};
+use crate::run::{Episode, EpisodeDriver, RunTick};
+use crate::team::ProcessTeam;
 use policy::reward::{Judgement, Reward};
 use policy::rollout::{About, Row, Shard};
 use std::path::PathBuf;
 use std::time::Instant;
+use vodca::horizon_source::Horizons;
 use vodca::metrics::RunMetrics;
 use vodca::params::Params;
+use vodca::play::{Observer, Verdict};
 
 /// What became of an episode.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -78,7 +82,6 @@ struct Running {
     number: u64,
     max_ticks: u64,
     reward: Reward,
-    metrics: RunMetrics,
     total: f64,
     /// Ticks and path when everybody had arrived for the first time.
     arrived: Option<(u64, f64)>,
@@ -127,18 +130,18 @@ impl<'a> Recorder<'a> {
         (self.written)(&Written { path, played: std::mem::take(&mut self.played), seconds })
     }
 
-    fn row(&mut self, tick: &Tick<'_>, judgement: &Judgement, truncated: bool, number: u64) {
+    fn row(&mut self, tick: &RunTick<'_>, judgement: &Judgement, truncated: bool, number: u64) {
         self.observation.clear();
         self.next_observation.clear();
         self.action.clear();
         self.horizon.clear();
         for (robot, step) in tick.steps.iter().enumerate() {
-            // The policy saw the measured position; without noise that is the true one.
-            let (here, next) = (tick.measured[robot], step.next_position);
+            // What the policy saw, and what it sees next.
+            let (here, next) = (step.measured, step.next_measured);
             self.observation.extend([here.x as f32, here.y as f32]);
             self.next_observation.extend([next.x as f32, next.y as f32]);
             self.horizon.push(step.horizon.steps() as u8);
-            let action = tick.actions.get(robot).copied().unwrap_or(step.horizon.action() as f32);
+            let action = tick.horizons.actions().get(robot).copied().unwrap_or(step.horizon.action() as f32);
             self.action.push(action);
         }
         self.shard.push(&Row {
@@ -155,33 +158,16 @@ impl<'a> Recorder<'a> {
     }
 }
 
-impl Director for Recorder<'_> {
-    fn begin(&mut self, episode: &Episode<'_>) -> Result<Option<[u8; 32]>, RecordError> {
-        if self.played.is_empty() {
-            self.started = Instant::now();
-        }
-        self.now = Some(Running {
-            number: episode.number,
-            max_ticks: episode.scenario.max_ticks,
-            reward: Reward::new(episode.scenario, self.params),
-            metrics: RunMetrics::new(episode.scenario, self.params),
-            total: 0.0,
-            arrived: None,
-        });
-        if let Some(digest) = self.round.policy {
-            self.shard.about.policy_sha256 = policy::encoding::hex(&digest);
-        }
-        Ok(self.round.policy)
-    }
+impl Observer<ProcessTeam, RunHorizons> for Recorder<'_> {
+    type Error = RecordError;
 
-    fn tick(&mut self, tick: &Tick<'_>) -> Result<Verdict, RecordError> {
+    fn tick(&mut self, tick: &RunTick<'_>) -> Result<Verdict, RecordError> {
         let Some(now) = &mut self.now else { return Ok(Verdict::Over) };
         let judgement = now.reward.tick(tick.tick, tick.steps);
-        now.metrics.observe(tick.tick, tick.steps);
         now.total += judgement.terms.total();
         let played = tick.tick + 1;
         if judgement.arrived && now.arrived.is_none() {
-            now.arrived = Some((played, now.metrics.finish().path_cost));
+            now.arrived = Some((played, tick.metrics.finish().path_cost));
         }
         let enough = match (self.until, now.arrived) {
             (Until::Arrived { ticks }, Some((arrived, _))) => judgement.arrived && played >= arrived + ticks,
@@ -195,10 +181,29 @@ impl Director for Recorder<'_> {
         self.row(tick, &judgement, (last || enough) && !judgement.collided, number);
         Ok(if judgement.collided || enough { Verdict::Over } else { Verdict::Continue })
     }
+}
 
-    fn another(&mut self, _: &Outcome) -> Result<bool, RecordError> {
+impl EpisodeDriver for Recorder<'_> {
+    fn begin(&mut self, episode: &Episode<'_>) -> Result<Option<[u8; 32]>, RecordError> {
+        if self.played.is_empty() {
+            self.started = Instant::now();
+        }
+        self.now = Some(Running {
+            number: episode.number,
+            max_ticks: episode.scenario.max_ticks,
+            reward: Reward::new(episode.scenario, self.params),
+            total: 0.0,
+            arrived: None,
+        });
+        if let Some(digest) = self.round.policy {
+            self.shard.about.policy_sha256 = policy::encoding::hex(&digest);
+        }
+        Ok(self.round.policy)
+    }
+
+    fn another(&mut self, metrics: &RunMetrics) -> Result<bool, RecordError> {
         if let Some(now) = self.now.take() {
-            let summary = now.metrics.finish();
+            let summary = metrics.finish();
             let (arrived_tick, path) = now.arrived.unwrap_or((summary.ticks, summary.path_cost));
             let success = now.arrived.is_some() && summary.collisions == 0;
             let (episode, ticks, total) = (now.number, summary.ticks, now.total);

@@ -10,7 +10,11 @@ mod frame;
 mod terminal;
 mod viewers;
 
-use crate::run::Tick;
+use crate::horizons::RunHorizons;
+use crate::record::RecordError;
+use crate::run::RunTick;
+use crate::team::ProcessTeam;
+use crate::tick_parts::TickTimes;
 use browser::BrowserView;
 use foxglove::FoxgloveView;
 pub use frame::Frame;
@@ -21,8 +25,8 @@ use std::time::{Duration, Instant};
 use terminal::TerminalView;
 use vodca::explain::Explainer;
 use vodca::layout::Layout;
-use vodca::metrics::RunMetrics;
 use vodca::params::Params;
+use vodca::play::{Observer, Tick, Verdict};
 use vodca::scenario::Scenario;
 use vodca::step::{Status, Step};
 
@@ -109,12 +113,12 @@ impl Views {
         })
     }
 
-    /// Takes in a tick that took `duration`; `metrics` have seen it already.
-    pub fn tick(&mut self, seen: &Tick<'_>, duration: Duration, metrics: &RunMetrics) {
+    /// Takes in a tick.
+    fn show(&mut self, seen: &RunTick<'_>) {
         if self.terminal.is_none() && self.browser.is_none() && self.foxglove.is_none() {
             return;
         }
-        let Tick { tick, steps, acting, .. } = *seen;
+        let Tick { tick, steps, metrics, .. } = *seen;
         let fell_back = |step: &&Step| matches!(step.status, Status::Shifted | Status::Stopped);
         self.fallbacks += steps.iter().filter(fell_back).count() as u64;
         self.explainer.observe(tick, steps);
@@ -123,11 +127,11 @@ impl Views {
             let frame = Frame {
                 tick,
                 explainer: self.explainer.clone(),
-                duration,
+                duration: Duration::from_nanos(TickTimes::from(seen.team).duration_ns),
                 arrived: metrics.arrived(),
                 min_separation: metrics.min_separation(),
                 fallbacks: self.fallbacks,
-                acting,
+                acting: seen.horizons.acting(),
             };
             self.last = self.slot.offer(frame);
         }
@@ -149,5 +153,14 @@ impl Views {
         if let Some(foxglove) = self.foxglove.take() {
             foxglove.close();
         }
+    }
+}
+
+impl Observer<ProcessTeam, RunHorizons> for Views {
+    type Error = RecordError;
+
+    fn tick(&mut self, seen: &RunTick<'_>) -> Result<Verdict, RecordError> {
+        self.show(seen);
+        Ok(Verdict::Continue)
     }
 }

@@ -6,7 +6,7 @@ use super::row::{Results, Row, TICK_PARTS};
 use super::teams::{Load, TeamSpec, drive};
 use super::{BenchError, Extent};
 use coordinator::latency::Latency;
-use coordinator::run::Tick;
+use coordinator::run::RunTick;
 use coordinator::tick_parts::{PARTS, parts};
 use shared::exchange::Kind;
 use std::time::Duration;
@@ -57,10 +57,10 @@ fn full_speed(
         let (mut latency, mut beside) = (Latency::new(), Latency::new());
         let mut by_part: [Latency; PARTS.len()] = Default::default();
         let spec = TeamSpec { scenario: &scenario, load, kind: Some(kind), real_time: false, ticks };
-        let mut observe = |tick: &Tick<'_>| {
+        let mut observe = |tick: &RunTick<'_>| {
             if tick.tick >= WARM_UP {
-                latency.record_ns(tick.collected.saturating_sub(tick.announced));
-                for (stamps, step) in tick.stamps.iter().zip(tick.steps) {
+                latency.record_ns(tick.team.moments().collected.saturating_sub(tick.team.moments().announced));
+                for (stamps, step) in tick.team.stamps().iter().zip(tick.steps) {
                     by_part.iter_mut().zip(parts(stamps, step)).for_each(|(to, part)| to.record_ns(part));
                 }
             }
@@ -101,8 +101,8 @@ fn real_time(
     for ((kind, kind_name), (load, load_name)) in combinations(robots) {
         let mut latency = Latency::new();
         let spec = TeamSpec { scenario: &scenario, load, kind: Some(kind), real_time: true, ticks };
-        let mut observe = |tick: &Tick<'_>| {
-            latency.record_ns(tick.collected.saturating_sub(tick.announced));
+        let mut observe = |tick: &RunTick<'_>| {
+            latency.record_ns(tick.team.moments().collected.saturating_sub(tick.team.moments().announced));
             Ok(())
         };
         drive(&spec, extent.stop, &mut observe)?;

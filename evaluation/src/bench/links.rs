@@ -305,7 +305,10 @@ struct TeamSecond {
 
 impl Link for TeamSecond {
     fn send(&mut self, message: Message) -> Result<(), BenchError> {
-        Ok(self.to.report(Report { plan: plan_of(message, 1), ..Report::presence(0, 1, kind::STEP) })?)
+        Ok(self.to.report(Report {
+            plan: plan_of(message, 1),
+            ..Report::presence(0, 1, kind::STEP, vodca::Position::zeros())
+        })?)
     }
 
     fn receive(&mut self) -> Result<Message, BenchError> {

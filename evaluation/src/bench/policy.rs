@@ -108,7 +108,7 @@ fn round_trip(
     let mut latency = Latency::new();
     // The policy is asked between the end of one tick and the announcement of the next.
     drive_with(&spec, Some(policy), extent.stop, &mut |tick| {
-        latency.record_ns(tick.announced.saturating_sub(tick.asked));
+        latency.record_ns(tick.team.moments().announced.saturating_sub(tick.team.moments().asked));
         Ok(())
     })?;
     Ok(latency)

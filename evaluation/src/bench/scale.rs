@@ -4,7 +4,7 @@ use super::row::{Results, Row};
 use super::teams::{Load, TeamSpec, drive};
 use super::{BenchError, Extent};
 use coordinator::latency::Latency;
-use coordinator::run::Tick;
+use coordinator::run::RunTick;
 
 /// Measures teams in the form of exchange that is their default.
 pub(super) fn run(extent: &Extent<'_>, results: &mut Results) -> Result<(), BenchError> {
@@ -15,9 +15,9 @@ pub(super) fn run(extent: &Extent<'_>, results: &mut Results) -> Result<(), Benc
         let ticks = extent.pick(150, 3);
         let spec = TeamSpec { scenario: &scenario, load: Load::Safe, kind: None, real_time: true, ticks };
         let (mut tick_time, mut late) = (Latency::new(), Latency::new());
-        let mut observe = |tick: &Tick<'_>| {
-            tick_time.record_ns(tick.collected.saturating_sub(tick.announced));
-            late.record_ns(tick.late);
+        let mut observe = |tick: &RunTick<'_>| {
+            tick_time.record_ns(tick.team.moments().collected.saturating_sub(tick.team.moments().announced));
+            late.record_ns(tick.team.moments().late);
             Ok(())
         };
         let driven = drive(&spec, extent.stop, &mut observe)?;

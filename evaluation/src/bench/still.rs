@@ -16,11 +16,17 @@ struct Still {
 }
 
 impl Drive for Still {
+    fn measured(&self) -> Position {
+        self.position
+    }
+
     fn step(&mut self, _: u64, horizon: Horizon, _: &Hearing) -> Step {
         Step {
             position: self.position,
+            measured: self.position,
             input: Input::zeros(),
             next_position: self.position,
+            next_measured: self.position,
             horizon,
             rows: 0,
             level: Level::Baseline,

@@ -4,13 +4,13 @@ use super::{BenchError, partner};
 use coordinator::launch::Program;
 use coordinator::policy::PolicyOptions;
 use coordinator::record::{PARAMS_FILE, RecordError, RunFolder, SCENARIO_FILE};
-use coordinator::run::{Options, Outcome, Tick, Verdict};
-use coordinator::team::Team;
+use coordinator::run::{Options, Outcome, Run, RunTick};
 use shared::exchange::Kind;
 use shared::stop::StopFlag;
 use std::time::{Duration, Instant};
 use vodca::metrics::RunMetrics;
 use vodca::params::Profile;
+use vodca::play::Verdict;
 use vodca::scenario::set_up;
 
 /// What robots do in a tick.
@@ -61,7 +61,7 @@ pub(super) struct Driven {
 pub(super) fn drive(
     spec: &TeamSpec<'_>,
     stop: &StopFlag,
-    observe: &mut dyn FnMut(&Tick<'_>) -> Result<(), BenchError>,
+    observe: &mut dyn FnMut(&RunTick<'_>) -> Result<(), BenchError>,
 ) -> Result<Driven, BenchError> {
     drive_with(spec, None, stop, observe)
 }
@@ -71,7 +71,7 @@ pub(super) fn drive_with(
     spec: &TeamSpec<'_>,
     policy: Option<PolicyOptions>,
     stop: &StopFlag,
-    observe: &mut dyn FnMut(&Tick<'_>) -> Result<(), BenchError>,
+    observe: &mut dyn FnMut(&RunTick<'_>) -> Result<(), BenchError>,
 ) -> Result<Driven, BenchError> {
     let profile = if spec.load == Load::Paper { Profile::Paper } else { Profile::Safe };
     let (mut scenario, params) = set_up(Some(spec.scenario), None, profile, &[])?;
@@ -90,10 +90,7 @@ pub(super) fn drive_with(
     let mut options = Options::new(folder.path(), &scenario).map_err(coordinator::run::RunError::from)?;
     options.exchange = spec.kind.unwrap_or(Kind::default_for(robots));
     options.real_time = spec.real_time;
-    if policy.is_some() {
-        options.horizons = shared::team::POLICY.into();
-        options.policy = policy;
-    }
+    options.policy = policy;
     options.tick_deadline = Duration::from_secs(20); // a busy machine shall spoil a figure, not the benchmark
     options.start_patience = Duration::from_secs(120);
     if spec.load == Load::NoQp {
@@ -106,24 +103,23 @@ pub(super) fn drive_with(
     let (mut metrics, mut failed, mut driven) = (RunMetrics::new(&scenario, &params), None, Driven::default());
     let mut first = 0;
     let began = Instant::now();
-    let team = Team::launch(&scenario, &params, options, stop)?;
-    let ended = team.run(stop, &mut |tick: &Tick<'_>| {
+    let run = Run::launch(&scenario, &params, options, stop)?;
+    let mut watch = |tick: &RunTick<'_>| {
         if tick.tick == 0 {
             // What has passed since the announcement belongs to the tick.
-            let since = Duration::from_nanos(shared::os::now_ns().saturating_sub(tick.announced));
+            let since = Duration::from_nanos(shared::os::now_ns().saturating_sub(tick.team.moments().announced));
             driven.start = began.elapsed().saturating_sub(since);
-            first = tick.announced;
+            first = tick.team.moments().announced;
         }
         driven.ticks = tick.tick + 1;
-        driven.driving = Duration::from_nanos(tick.collected.saturating_sub(first));
+        driven.driving = Duration::from_nanos(tick.team.moments().collected.saturating_sub(first));
         if let Err(error) = observe(tick) {
             failed = Some(error);
             return Ok(Verdict::Over);
         }
-        metrics.observe(tick.tick, tick.steps);
-        let arrived = spec.load != Load::NoQp && metrics.arrived_all();
-        Ok(if arrived { Verdict::Over } else { Verdict::Continue })
-    })?;
+        Ok(Verdict::Continue)
+    };
+    let ended = run.play(&mut [&mut watch], &mut metrics)?;
     if let Some(error) = failed {
         return Err(error);
     }

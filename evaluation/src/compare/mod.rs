@@ -14,14 +14,16 @@ pub use sample::{Median, Sample};
 pub use summary::{Comparison, Row, VERSION};
 pub use tables::{by_family, by_run};
 
-use crate::in_process::{run_team, run_with_policy};
+use crate::in_process::run_team;
 use crate::parallel;
 use coordinator::policy::client::{ClientError, PolicyClient};
 use plan::Source;
 use shared::stop::StopFlag;
+use std::convert::Infallible;
 use std::sync::Mutex;
 use std::sync::PoisonError;
 use vodca::metrics::RunSummary;
+use vodca::play;
 use vodca::step::Step;
 
 /// Policy servers that a core keeps at a time.
@@ -56,6 +58,21 @@ enum Halt {
 impl From<ClientError> for Halt {
     fn from(error: ClientError) -> Self {
         Self::Failed(error)
+    }
+}
+
+/// A run of a team in this process with horizons that may fail with `H`.
+fn halt<H: Into<Halt>>(ended: play::Halt<Infallible, H, Halt>) -> Halt {
+    match ended {
+        play::Halt::Team(never) => match never {},
+        play::Halt::Horizons(error) => error.into(),
+        play::Halt::Observer(halt) => halt,
+    }
+}
+
+impl From<Infallible> for Halt {
+    fn from(never: Infallible) -> Self {
+        match never {}
     }
 }
 
@@ -98,7 +115,7 @@ impl Job {
         };
         let metrics = match &self.source {
             Source::Table(source) => {
-                run_team(&self.scenario, &self.params, |robot, tick| source.horizon(robot, tick), on_tick)?
+                run_team(&self.scenario, &self.params, &mut source.clone(), on_tick).map_err(halt)?
             }
             Source::Policy(policy) => {
                 let mut client = match servers.iter().position(|client| client.policy() == policy) {
@@ -108,7 +125,8 @@ impl Job {
                         PolicyClient::start(policy, &self.scenario, &self.params, stops[0])?
                     }
                 };
-                let metrics = run_with_policy(&self.scenario, &self.params, &mut client, on_tick)?;
+                let mut horizons = client.horizons(&self.params, self.scenario.seed);
+                let metrics = run_team(&self.scenario, &self.params, &mut horizons, on_tick).map_err(halt)?;
                 servers.push(client);
                 metrics
             }

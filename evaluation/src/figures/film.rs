@@ -1,14 +1,16 @@
 //! Runs whose every tick is kept, for figures.
 
-use crate::in_process::{run_whole, run_with_policy};
-use coordinator::policy::client::{ClientError, PolicyClient};
+use crate::in_process::{run_team, run_whole};
+use coordinator::policy::client::PolicyClient;
 use coordinator::policy::found::FoundPolicy;
 use shared::stop::StopFlag;
+use std::convert::Infallible;
 use std::error::Error;
 use std::path::Path;
 use vodca::horizon_source::HorizonSource;
 use vodca::metrics::RunSummary;
 use vodca::params::{Params, Profile};
+use vodca::play::Halt;
 use vodca::scenario::{Scenario, SetupError, set_up};
 use vodca::step::Step;
 
@@ -53,10 +55,15 @@ impl Setting {
         let (scenario, params) = self.set_up()?;
         let mut client = PolicyClient::start(&FoundPolicy::find(name)?, &scenario, &params, &StopFlag::default())?;
         let mut ticks = Vec::new();
-        let metrics = run_with_policy(&scenario, &params, &mut client, |_, steps| {
+        let ended = run_team(&scenario, &params, &mut client.horizons(&params, scenario.seed), |_, steps| {
             ticks.push(steps.to_vec());
-            Ok::<(), ClientError>(())
-        })?;
+            Ok::<(), Infallible>(())
+        });
+        let metrics = match ended {
+            Ok(metrics) => metrics,
+            Err(Halt::Horizons(error)) => return Err(error.into()),
+            Err(Halt::Team(never) | Halt::Observer(never)) => match never {},
+        };
         Ok(Film { horizon: format!("policy:{name}"), scenario, params, ticks, summary: metrics.finish() })
     }
 

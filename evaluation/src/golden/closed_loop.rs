@@ -69,7 +69,7 @@ impl Case {
     pub fn check(&self, tolerance: f64) -> Result<Option<Deviation>, String> {
         let mut team = Team::new(&self.scenario(), &self.params()?, 0);
         for (tick, horizons) in self.horizons.iter().enumerate() {
-            let steps = team.step(|robot| horizons[robot]);
+            let steps = team.step(horizons);
             for (robot, step) in steps.iter().enumerate() {
                 let reference = self.positions[tick + 1][robot];
                 let off = (step.next_position - Position::new(reference[0], reference[1])).norm();

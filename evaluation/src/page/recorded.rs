@@ -100,10 +100,13 @@ fn read_step(line: &str, set_point: Position, sample_time: f64) -> Option<Step> 
     const LEVELS: [Level; 5] =
         [Level::ClosedForm, Level::Structured, Level::Clarabel, Level::Fallback, Level::Baseline];
     const STATUSES: [Status; 5] = [Status::Solved, Status::Relaxed, Status::Held, Status::Shifted, Status::Stopped];
+    let next_position = position + input * sample_time;
     Some(Step {
         position,
+        measured: position,
         input,
-        next_position: position + input * sample_time,
+        next_position,
+        next_measured: next_position,
         horizon: Horizon::new(fields.get(6)?.parse().ok()?).ok()?,
         rows: fields.get(7)?.parse().ok()?,
         level: LEVELS.into_iter().find(|&level| Some(&level_word(level)) == fields.get(8))?,

@@ -37,12 +37,11 @@ impl Hub {
     }
 
     /// Announces tick `tick` to every robot, in a relayed exchange with all plans of `tick - 1`.
-    /// `horizons`: what a policy chose for this tick, by robot (missing: the robot's own source).
-    /// Gives the stamp of the announcement, ns.
-    pub fn announce(&mut self, tick: u64, horizons: &[Option<Horizon>]) -> Result<u64, ServiceError> {
+    /// `horizons`: N_i^k by robot. Gives the stamp of the announcement, ns.
+    pub fn announce(&mut self, tick: u64, horizons: &[Horizon]) -> Result<u64, ServiceError> {
         let mut announcement = Announcement { epoch: self.epoch, tick, order: order::TICK, ..Default::default() };
         for (to, horizon) in announcement.horizons.iter_mut().zip(horizons) {
-            *to = horizon.map_or(0, |horizon| horizon.steps() as u8);
+            *to = horizon.steps() as u8;
         }
         let plans: &[Plan] = if self.kind == Kind::Relay && tick > 0 { &self.plans } else { &[] };
         announcement.plans = plans.len() as u32;

@@ -47,7 +47,7 @@ pub enum Order {
     Tick {
         /// k.
         tick: u64,
-        /// N_i^k if a policy chose it; `None`: ask the own source.
+        /// N_i^k; `None`: what came is no horizon.
         horizon: Option<Horizon>,
         /// When it was announced, ns.
         announced: u64,

@@ -35,6 +35,10 @@ struct Straight {
 }
 
 impl Drive for Straight {
+    fn measured(&self) -> Position {
+        self.position
+    }
+
     fn step(&mut self, tick: u64, horizon: Horizon, _: &Hearing) -> Step {
         if let Some((kind, at)) = &self.fault
             && *at == tick
@@ -46,8 +50,10 @@ impl Drive for Straight {
         self.position = position + input * self.sample_time;
         Step {
             position,
+            measured: position,
             input,
             next_position: self.position,
+            next_measured: self.position,
             horizon,
             rows: 0,
             level: Level::Baseline,

@@ -38,6 +38,23 @@ fn the_same_seed_gives_the_same_bytes_through_either_exchange() {
     assert!(peer != ask("other", 8, "--exchange peer"));
 }
 
+#[test]
+fn what_a_row_leads_to_is_what_the_next_row_sees_with_noise_too() {
+    let place = tempfile::tempdir().unwrap();
+    let asked = "--scenario four_gate --episodes 3 --max-ticks 40 --set disturbance.noise=0.05 --seed 5";
+    let shard = Shard::read(&rollout(&place.path().join("noisy"), asked)[0]).unwrap();
+    let rows: Vec<Row<'_>> = shard.iter().collect();
+    let mut pairs = 0;
+    for pair in rows.windows(2).filter(|pair| pair[0].episode == pair[1].episode) {
+        assert_eq!(pair[0].next_observation, pair[1].observation, "episode {} tick {}", pair[0].episode, pair[0].tick);
+        pairs += 1;
+    }
+    assert_eq!(pairs, 3 * 39);
+    // It is what was measured, not what is true: the start is exactly known.
+    let start = vodca::scenario::Scenario::resolve(Some("four_gate"), None).unwrap().robots[0].start;
+    assert!(rows[0].observation[0] != start.x as f32 && (rows[0].observation[0] - start.x as f32).abs() <= 0.05);
+}
+
 /// The rows of episode `episode`.
 fn episode(shard: &Shard, episode: u64) -> Vec<String> {
     let rows = shard.iter().filter(|row| row.episode == episode);

@@ -21,7 +21,8 @@ fn in_process(scenario: &str, horizon: &str, profile: Profile, ticks: u64) -> St
 pub(crate) fn trajectory(mut team: Team, ticks: u64, horizon: impl Fn(usize, u64) -> Horizon) -> String {
     let (mut text, mut positions) = (format!("{HEADER}\n"), Vec::new());
     for tick in 0..ticks {
-        let steps = team.step(|robot| horizon(robot, tick));
+        let horizons: Vec<Horizon> = (0..team.measured().len()).map(|robot| horizon(robot, tick)).collect();
+        let steps = team.step(&horizons);
         push_tick(&mut text, tick, steps);
         positions = steps.iter().map(|step| step.next_position).collect();
     }

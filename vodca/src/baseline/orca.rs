@@ -13,13 +13,14 @@ use crate::prediction::Prediction;
 use crate::random::Use;
 use crate::step::{Level, Status};
 use crate::{Input, Position};
+use std::sync::Arc;
 
 /// One robot driven by ORCA.
 pub struct OrcaController {
     robot: usize,
     seed: u64,
     params: Params,
-    layout: Layout,
+    layout: Arc<Layout>,
     velocity: Input,
     seen: Vec<(f64, usize)>,
     planes: Vec<HalfPlane>,
@@ -41,7 +42,7 @@ struct Disc {
 
 impl OrcaController {
     /// The controller of `robot`; everything a tick needs is allocated here. `seed` feeds `orca.push`.
-    pub fn new(robot: usize, params: &Params, layout: &Layout, seed: u64) -> Self {
+    pub fn new(robot: usize, params: &Params, layout: &Arc<Layout>, seed: u64) -> Self {
         let discs = layout.set_points.len() + layout.obstacles.len();
         Self {
             robot,

@@ -14,8 +14,10 @@ fn at(x: f64, y: f64) -> Position {
 fn step(from: Position, to: Position) -> Step {
     Step {
         position: from,
+        measured: from,
         input: Input::zeros(),
         next_position: to,
+        next_measured: to,
         horizon: Horizon::MIN,
         rows: 0,
         level: Level::ClosedForm,
