@@ -37,9 +37,9 @@ fn horizons_of_ones_own_drive_a_team() {
 }
 
 #[test]
-fn a_policy_drives_a_team_in_this_process_as_it_does_in_a_run() {
+fn a_policy_drives_a_team_in_this_process() {
     let text = run(env!("CARGO_BIN_EXE_drive_with_policy"), &["policies/two_setpoint"]);
-    assert!(text.starts_with("Ok(Over) after 87 ticks, 44.5"), "{text}");
+    assert!(text.starts_with("Ok(Over) after 87 ticks, 44.48 m"), "{text}");
 }
 
 #[test]
