@@ -1,10 +1,10 @@
-//! Curves as TensorBoard reads them: an event file of scalars. The only file that imports `crc32c`.
+//! Curves as TensorBoard reads them: an event file of scalars. The only file of this crate that imports
+//! `crc32c` and `prost`.
 //!
 //! The file is a list of records (TFRecord): length as u64, its checksum, the bytes, their checksum,
-//! all little-endian. Each record is a protobuf Event{wall_time 1, step 2, file_version 3, summary 5},
-//! a summary a list of Value{tag 1, simple_value 2}.
+//! all little-endian. Each record is an [`Event`] of `event.proto`.
 
-use policy::onnx::wire::Message;
+use prost::Message;
 use std::fs::File;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -16,6 +16,36 @@ use std::time::{SystemTime, UNIX_EPOCH};
 pub struct CurvesError {
     path: PathBuf,
     source: io::Error,
+}
+
+/// One record: the version of the file, or a summary.
+#[derive(Clone, PartialEq, Message)]
+struct Event {
+    /// s since 1970.
+    #[prost(double, tag = "1")]
+    wall_time: f64,
+    #[prost(int64, optional, tag = "2")]
+    step: Option<i64>,
+    #[prost(string, optional, tag = "3")]
+    file_version: Option<String>,
+    #[prost(message, optional, tag = "5")]
+    summary: Option<Summary>,
+}
+
+/// All scalars of a step.
+#[derive(Clone, PartialEq, Message)]
+struct Summary {
+    #[prost(message, repeated, tag = "1")]
+    value: Vec<Scalar>,
+}
+
+/// A `Summary.Value`.
+#[derive(Clone, PartialEq, Message)]
+struct Scalar {
+    #[prost(string, tag = "1")]
+    tag: String,
+    #[prost(float, optional, tag = "2")]
+    simple_value: Option<f32>,
 }
 
 /// An open event file.
@@ -36,18 +66,19 @@ impl Curves {
         let path = folder.join(name);
         let file = File::create_new(&path).map_err(failed)?;
         let mut curves = Self { file, path };
-        curves.record(event(time.as_secs_f64(), 0).bytes(3, "brain.Event:2"))?;
+        let version = Some("brain.Event:2".into());
+        let wall_time = time.as_secs_f64();
+        curves.record(&Event { wall_time, step: Some(0), file_version: version, summary: None })?;
         Ok(curves)
     }
 
     /// Writes `scalars` (tag and value) at `step`. Values that are not finite are left out.
     pub fn scalars(&mut self, step: u64, scalars: &[(&str, f64)]) -> Result<(), CurvesError> {
-        let time = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_secs_f64();
-        let value = |summary: Message, (tag, value): &(&str, f64)| {
-            summary.message(1, Message::new().bytes(1, tag).float(2, *value as f32))
-        };
+        let wall_time = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_secs_f64();
         let finite = scalars.iter().filter(|(_, value)| value.is_finite());
-        self.record(event(time, step).message(5, finite.fold(Message::new(), value)))
+        let scalar = |&(tag, value): &(&str, f64)| Scalar { tag: tag.into(), simple_value: Some(value as f32) };
+        let summary = Some(Summary { value: finite.map(scalar).collect() });
+        self.record(&Event { wall_time, step: Some(step as i64), file_version: None, summary })
     }
 
     /// Where it is.
@@ -55,15 +86,11 @@ impl Curves {
         &self.path
     }
 
-    fn record(&mut self, event: Message) -> Result<(), CurvesError> {
+    fn record(&mut self, event: &Event) -> Result<(), CurvesError> {
         // In one write: a crash leaves whole records.
-        let written = self.file.write_all(&framed(&event.finish()));
+        let written = self.file.write_all(&framed(&event.encode_to_vec()));
         written.map_err(|source| CurvesError { path: self.path.clone(), source })
     }
-}
-
-fn event(time: f64, step: u64) -> Message {
-    Message::new().double(1, time).varint(2, step)
 }
 
 /// One record around `bytes`.
@@ -81,7 +108,6 @@ fn masked(bytes: &[u8]) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use policy::onnx::wire::{Fields, Value};
     use std::process::Command;
 
     #[test]
@@ -99,11 +125,9 @@ mod tests {
         curves.scalars(7, &[("a", 1.5), ("b", f64::NAN), ("c", f64::INFINITY)]).unwrap();
         let bytes = std::fs::read(curves.path()).unwrap();
         let first = 16 + u64::from_le_bytes(bytes[..8].try_into().unwrap()) as usize;
-        let event = &bytes[first + 12..bytes.len() - 4];
-        let fields: Vec<_> = Fields::new(event).map(Result::unwrap).collect();
-        assert_eq!(fields[1], (2, Value::Varint(7)));
-        let Value::Bytes(summary) = fields[2].1 else { panic!("{fields:?}") };
-        assert_eq!(Fields::new(summary).count(), 1);
+        let event = Event::decode(&bytes[first + 12..bytes.len() - 4]).unwrap();
+        assert_eq!(event.step, Some(7));
+        assert_eq!(event.summary.unwrap().value, [Scalar { tag: "a".into(), simple_value: Some(1.5) }]);
     }
 
     #[test]

@@ -6,7 +6,7 @@ mod common;
 use common::{constant_actor, contract, dense, prober};
 use policy::contract::ContractError;
 use policy::digest::sha256;
-use policy::onnx::wire::Message;
+use policy::onnx::proto::{GraphProto, Message, ModelProto, NodeProto, OperatorSetIdProto, TensorProto};
 use policy_server::check::{CheckError, Limits, Prober, TryError};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -49,34 +49,38 @@ fn with_limits(change: impl FnOnce(&mut Limits)) -> Prober {
     prober
 }
 
+/// The good model, changed.
+fn changed(change: impl FnOnce(&mut ModelProto)) -> Vec<u8> {
+    let mut model = ModelProto::decode(constant_actor(ROBOTS, 0.3).write().as_slice()).unwrap();
+    change(&mut model);
+    model.encode_to_vec()
+}
+
+fn with_graph(change: impl FnOnce(&mut GraphProto)) -> Vec<u8> {
+    changed(|model| change(model.graph.as_mut().unwrap()))
+}
+
 /// The model with one more node that calls `operator`.
 fn with_operator(operator: &str) -> Vec<u8> {
-    let node = Message::new().bytes(1, "state").bytes(2, "unused").bytes(4, operator);
-    appended_to_graph(&constant_actor(ROBOTS, 0.3).write(), 1, node)
+    let node = NodeProto {
+        input: vec!["state".into()],
+        output: vec!["unused".into()],
+        op_type: Some(operator.into()),
+        ..Default::default()
+    };
+    with_graph(|graph| graph.node.push(node))
 }
 
-/// Appends a field to the graph: of two fields 7 the reader takes the last, so the whole is rebuilt.
-fn appended_to_graph(model: &[u8], field: u64, message: Message) -> Vec<u8> {
-    use policy::onnx::wire::{Fields, Value};
-    Fields::new(model)
-        .fold(Message::new(), |rebuilt, next| match next.unwrap() {
-            (7, Value::Bytes(graph)) => {
-                let more = Message::new().message(field, message.clone()).finish();
-                rebuilt.bytes(7, [graph, &more].concat())
-            }
-            (number, Value::Bytes(bytes)) => rebuilt.bytes(number, bytes),
-            (number, Value::Varint(value)) => rebuilt.varint(number, value),
-            other => panic!("{other:?}"),
-        })
-        .finish()
+/// The model with one more tensor, four float32 that `change` stores somewhere.
+fn with_tensor(name: &str, change: impl FnOnce(&mut TensorProto)) -> Vec<u8> {
+    let mut tensor = TensorProto { dims: vec![4], data_type: Some(1), name: Some(name.into()), ..Default::default() };
+    change(&mut tensor);
+    with_graph(|graph| graph.initializer.push(tensor))
 }
 
-fn with_opset(version: u64) -> Vec<u8> {
-    let again = Message::new().message(8, Message::new().bytes(1, "").varint(2, version)).finish();
-    let whole = constant_actor(ROBOTS, 0.3).write();
-    let old = Message::new().message(8, Message::new().bytes(1, "").varint(2, 17)).finish();
-    let at = whole.windows(old.len()).position(|window| window == old).unwrap();
-    [&whole[..at], &again, &whole[at + old.len()..]].concat()
+fn with_opset(version: i64) -> Vec<u8> {
+    let set = OperatorSetIdProto { domain: Some(String::new()), version: Some(version) };
+    changed(|model| model.opset_import = vec![set])
 }
 
 /// One bad model with the kind of error it must give and words that its message must hold.
@@ -161,12 +165,15 @@ fn kinds() -> Vec<Kind> {
         ),
         kind!(
             "external data",
-            bad(|bytes, _| {
-                let tensor = Message::new().varint(1, 4).varint(2, 1).bytes(8, "far").varint(14, 1);
-                *bytes = appended_to_graph(bytes, 5, tensor);
-            }),
+            bad(|bytes, _| *bytes = with_tensor("far", |tensor| tensor.data_location = Some(1))),
             CheckError::ExternalData { .. },
             ["`far`", "external_data=False"]
+        ),
+        kind!(
+            "more nodes than memory should hold",
+            bad(|bytes, _| *bytes = with_graph(|graph| graph.node = vec![NodeProto::default(); 4097])),
+            CheckError::Onnx { .. },
+            ["more than 4096 nodes", "a few dozen"]
         ),
         kind!("future opset", bad(|bytes, _| *bytes = with_opset(26)), CheckError::Opset { .. }, ["operator set 26"]),
         kind!("ancient opset", bad(|bytes, _| *bytes = with_opset(6)), CheckError::Opset { .. }, ["7..=25"]),
@@ -190,10 +197,7 @@ fn kinds() -> Vec<Kind> {
         ),
         kind!(
             "tensor that does not fill its shape",
-            bad(|bytes, _| {
-                let tensor = Message::new().varint(1, 4).varint(2, 1).bytes(8, "short").bytes(9, [0; 8]);
-                *bytes = appended_to_graph(bytes, 5, tensor);
-            }),
+            bad(|bytes, _| *bytes = with_tensor("short", |tensor| tensor.raw_data = Some(vec![0; 8]))),
             CheckError::Onnx { .. },
             ["`short`", "do not fill it"]
         ),

@@ -9,10 +9,10 @@
 //!
 //! Why not the `foxglove` crate: it would add some ninety crates and a minute of build time for three
 //! message types. The published descriptors lie beside this file and go into every log, the messages
-//! are written by `scene.rs`; Foxglove's own Python decoder reads them back.
+//! are in `foxglove.rs`, what is drawn with them in `scene.rs`; Foxglove's own Python decoder reads them back.
 
-use super::scene;
 use super::trajectory::{level_word, status_word};
+use super::{foxglove, scene};
 use serde_json::json;
 use vodca::params::Params;
 use vodca::scenario::Scenario;
@@ -49,9 +49,9 @@ pub(crate) fn channels() -> [Channel; 4] {
         encoding: "protobuf",
     };
     [
-        picture("/layout", "foxglove.SceneUpdate", scene::SCENE_UPDATE),
-        picture("/scene", "foxglove.SceneUpdate", scene::SCENE_UPDATE),
-        picture("/poses", "foxglove.PosesInFrame", scene::POSES_IN_FRAME),
+        picture("/layout", "foxglove.SceneUpdate", foxglove::SCENE_UPDATE),
+        picture("/scene", "foxglove.SceneUpdate", foxglove::SCENE_UPDATE),
+        picture("/poses", "foxglove.PosesInFrame", foxglove::POSES_IN_FRAME),
         Channel {
             topic: "/team",
             schema: "vodca.Team",
@@ -64,15 +64,15 @@ pub(crate) fn channels() -> [Channel; 4] {
 
 /// The only message of `/layout`.
 pub(crate) fn layout(scenario: &Scenario, params: &Params) -> Vec<u8> {
-    scene::layout(scenario, params).into_bytes()
+    scene::layout(scenario, params)
 }
 
 /// The messages of one tick: the place of the channel, and the message.
 pub(crate) fn tick(scenario: &Scenario, params: &Params, tick: u64, steps: &[Step]) -> [(usize, Vec<u8>); 3] {
     let time = nanoseconds(params.model.sample_time, tick);
     [
-        (SCENE, scene::team(scenario, params, time, steps).into_bytes()),
-        (POSES, scene::poses(time, steps).into_bytes()),
+        (SCENE, scene::team(scenario, params, time, steps)),
+        (POSES, scene::poses(time, steps)),
         (TEAM, team_values(scenario, tick, steps).to_string().into_bytes()),
     ]
 }

@@ -14,10 +14,10 @@
 pub mod about;
 pub(crate) mod film;
 pub mod folder;
+mod foxglove;
 pub mod horizons;
 pub mod latency;
 pub mod mcap;
-mod protobuf;
 #[doc(hidden)]
 pub mod samples;
 mod scene;

@@ -1,117 +1,104 @@
-//! The team as a picture: Foxglove's published messages `SceneUpdate` and `PosesInFrame`.
+//! The team as a picture: Foxglove's `SceneUpdate` and `PosesInFrame`.
 //!
-//! Numbers in the calls are the field numbers of the published schemas (`schemas/*.bin`, which go into
-//! the log as well). Frame `world`, metres, z up; discs are 0.2 m high so that they can be seen from the side.
+//! Frame `world`, metres, z up; discs are 0.2 m high so that they can be seen from the side.
 
-use super::protobuf::{Message, Value, fields};
+use super::foxglove::{
+    Color, CylinderPrimitive, LinePrimitive, LineType, Message, Pose, PosesInFrame, Quaternion, SceneEntity,
+    SceneUpdate, TextPrimitive, Timestamp, Vector3, nonzero,
+};
 use vodca::Position;
 use vodca::params::Params;
 use vodca::scenario::Scenario;
 use vodca::step::Step;
 
-/// Descriptors of `foxglove.SceneUpdate` and everything it uses (Foxglove SDK, MIT licence).
-pub(super) const SCENE_UPDATE: &[u8] = include_bytes!("schemas/SceneUpdate.bin");
-/// Descriptors of `foxglove.PosesInFrame` and everything it uses (Foxglove SDK, MIT licence).
-pub(super) const POSES_IN_FRAME: &[u8] = include_bytes!("schemas/PosesInFrame.bin");
-
 const FRAME: &str = "world";
 const DISC_HEIGHT: f64 = 0.2; // m
-const GREY: [f64; 4] = [0.45, 0.45, 0.45, 1.0];
+const GREY: Color = Color { r: 0.45, g: 0.45, b: 0.45, a: 1.0 };
+const WHITE: Color = Color { r: 1.0, g: 1.0, b: 1.0, a: 1.0 };
 
 /// `SceneUpdate` with what does not move: obstacles, and a ring at every set-point.
-pub(super) fn layout(scenario: &Scenario, params: &Params) -> Message {
+pub(super) fn layout(scenario: &Scenario, params: &Params) -> Vec<u8> {
     let half = params.model.min_separation / 2.0;
-    let obstacles = scenario.obstacles.iter().enumerate().map(|(l, obstacle)| {
-        let disc = disc(obstacle.position, obstacle.radius.unwrap_or(half), GREY);
-        entity(&format!("obstacle {l}"), 0).message(10, &disc).message(13, &label(obstacle.position, &obstacle.name))
+    let obstacles = scenario.obstacles.iter().enumerate().map(|(l, obstacle)| SceneEntity {
+        cylinders: vec![disc(obstacle.position, obstacle.radius.unwrap_or(half), GREY)],
+        texts: vec![label(obstacle.position, &obstacle.name)],
+        ..entity(&format!("obstacle {l}"), 0)
     });
     let count = scenario.robots.len();
     let set_points = scenario.robots.iter().enumerate().map(|(i, robot)| {
         let rim = circle(robot.set_point, robot.radius.unwrap_or(half));
-        entity(&format!("set-point {i}"), 0).message(11, &line(LineKind::Loop, &rim, colour(i, count, 0.6)))
+        let ring = line(LineType::Loop, &rim, colour(i, count, 0.6));
+        SceneEntity { lines: vec![ring], ..entity(&format!("set-point {i}"), 0) }
     });
-    Message::default().messages(2, obstacles.chain(set_points))
+    SceneUpdate { entities: obstacles.chain(set_points).collect() }.encode_to_vec()
 }
 
 /// `SceneUpdate` of one tick: every robot as a disc with its number, and its predicted path.
-pub(super) fn team(scenario: &Scenario, params: &Params, nanoseconds: u64, steps: &[Step]) -> Message {
+pub(super) fn team(scenario: &Scenario, params: &Params, nanoseconds: u64, steps: &[Step]) -> Vec<u8> {
     let half = params.model.min_separation / 2.0;
     let entities = steps.iter().zip(&scenario.robots).enumerate().map(|(i, (step, robot))| {
         let colour = colour(i, steps.len(), 1.0);
-        entity(&format!("robot {i}"), nanoseconds)
-            .message(10, &disc(step.position, robot.radius.unwrap_or(half), colour))
-            .message(11, &line(LineKind::Strip, step.plan.states(), colour))
-            .message(13, &label(step.position, &i.to_string()))
+        SceneEntity {
+            cylinders: vec![disc(step.position, robot.radius.unwrap_or(half), colour)],
+            lines: vec![line(LineType::Strip, step.plan.states(), colour)],
+            texts: vec![label(step.position, &i.to_string())],
+            ..entity(&format!("robot {i}"), nanoseconds)
+        }
     });
-    Message::default().messages(2, entities)
+    SceneUpdate { entities: entities.collect() }.encode_to_vec()
 }
 
 /// `PosesInFrame` of one tick: all positions, in the order of the robots, heading along the input.
-pub(super) fn poses(nanoseconds: u64, steps: &[Step]) -> Message {
-    let poses = steps.iter().map(|step| {
+pub(super) fn poses(nanoseconds: u64, steps: &[Step]) -> Vec<u8> {
+    let pose = |step: &Step| {
         let half_angle = step.input.y.atan2(step.input.x) / 2.0;
-        let heading = Message::default().double(3, half_angle.sin()).double(4, half_angle.cos());
-        Message::default().message(1, &triple(step.position, 0.0)).message(2, &heading)
-    });
-    Message::default().message(1, &timestamp(nanoseconds)).text(2, FRAME).messages(3, poses)
+        let orientation = Quaternion { z: nonzero(half_angle.sin()), w: nonzero(half_angle.cos()) };
+        Pose { position: Some(point(step.position, 0.0)), orientation: Some(orientation) }
+    };
+    let (timestamp, poses) = (Some(timestamp(nanoseconds)), steps.iter().map(pose).collect());
+    PosesInFrame { timestamp, frame_id: FRAME.into(), poses }.encode_to_vec()
 }
 
-/// The predicted paths in a `SceneUpdate` that [`team`] wrote, by robot.
+/// The predicted paths in a `SceneUpdate` that [`team`] wrote, by robot; none in what is no such message.
 pub(super) fn plans(scene: &[u8]) -> Vec<Vec<Position>> {
-    let nested = |bytes, wanted| {
-        fields(bytes).filter_map(move |(number, value)| match value {
-            Value::Bytes(bytes) if number == wanted => Some(bytes),
-            _ => None,
-        })
-    };
-    let coordinate = |point, wanted| {
-        let found = fields(point).find_map(|(number, value)| match value {
-            Value::Double(value) if number == wanted => Some(value),
-            _ => None,
-        });
-        found.unwrap_or(0.0) // a default is left out
-    };
-    let point = |bytes| Position::new(coordinate(bytes, 1), coordinate(bytes, 2));
-    let plan = |entity| nested(entity, 11).flat_map(|line| nested(line, 5)).map(point).collect();
-    nested(scene, 2).map(plan).collect()
+    let position = |point: Vector3| Position::new(point.x.unwrap_or(0.0), point.y.unwrap_or(0.0));
+    let plan = |entity: SceneEntity| entity.lines.into_iter().flat_map(|line| line.points).map(position).collect();
+    SceneUpdate::decode(scene).unwrap_or_default().entities.into_iter().map(plan).collect()
 }
 
-fn entity(id: &str, nanoseconds: u64) -> Message {
-    Message::default().message(1, &timestamp(nanoseconds)).text(2, FRAME).text(3, id)
+fn entity(id: &str, nanoseconds: u64) -> SceneEntity {
+    let (frame_id, id) = (FRAME.into(), id.into());
+    SceneEntity { timestamp: Some(timestamp(nanoseconds)), frame_id, id, ..SceneEntity::default() }
 }
 
-fn disc(centre: Position, radius: f64, colour: [f64; 4]) -> Message {
-    let size = Message::default().double(1, 2.0 * radius).double(2, 2.0 * radius).double(3, DISC_HEIGHT);
-    Message::default()
-        .message(1, &pose(centre, DISC_HEIGHT / 2.0))
-        .message(2, &size)
-        .double(3, 1.0)
-        .double(4, 1.0)
-        .message(5, &rgba(colour))
+fn disc(centre: Position, radius: f64, colour: Color) -> CylinderPrimitive {
+    CylinderPrimitive {
+        pose: Some(pose(centre, DISC_HEIGHT / 2.0)),
+        size: Some(point(Position::new(2.0 * radius, 2.0 * radius), DISC_HEIGHT)),
+        bottom_scale: 1.0,
+        top_scale: 1.0,
+        color: Some(colour),
+    }
 }
 
-fn label(at: Position, text: &str) -> Message {
-    Message::default()
-        .message(1, &pose(at, 2.0 * DISC_HEIGHT))
-        .integer(2, 1) // billboard: faces the camera
-        .double(3, 0.5) // font size, m
-        .message(5, &rgba([1.0, 1.0, 1.0, 1.0]))
-        .text(6, text)
+fn label(at: Position, text: &str) -> TextPrimitive {
+    TextPrimitive {
+        pose: Some(pose(at, 2.0 * DISC_HEIGHT)),
+        billboard: true,
+        font_size: 0.5,
+        color: Some(WHITE),
+        text: text.into(),
+    }
 }
 
-#[derive(Clone, Copy)]
-enum LineKind {
-    Strip = 0,
-    Loop = 1,
-}
-
-fn line(kind: LineKind, points: &[Position], colour: [f64; 4]) -> Message {
-    Message::default()
-        .integer(1, kind as u64)
-        .message(2, &pose(Position::zeros(), 0.0))
-        .double(3, 0.05) // thickness, m
-        .messages(5, points.iter().map(|&point| triple(point, 0.0)))
-        .message(6, &rgba(colour))
+fn line(kind: LineType, points: &[Position], colour: Color) -> LinePrimitive {
+    LinePrimitive {
+        r#type: kind.into(),
+        pose: Some(pose(Position::zeros(), 0.0)),
+        thickness: 0.05,
+        points: points.iter().map(|&at| point(at, 0.0)).collect(),
+        color: Some(colour),
+    }
 }
 
 fn circle(centre: Position, radius: f64) -> [Position; 24] {
@@ -121,29 +108,25 @@ fn circle(centre: Position, radius: f64) -> [Position; 24] {
     })
 }
 
-fn pose(at: Position, z: f64) -> Message {
-    let upright = Message::default().double(4, 1.0);
-    Message::default().message(1, &triple(at, z)).message(2, &upright)
+fn pose(at: Position, z: f64) -> Pose {
+    let upright = Quaternion { z: None, w: Some(1.0) };
+    Pose { position: Some(point(at, z)), orientation: Some(upright) }
 }
 
-fn triple(at: Position, z: f64) -> Message {
-    Message::default().double(1, at.x).double(2, at.y).double(3, z)
+fn point(at: Position, z: f64) -> Vector3 {
+    Vector3 { x: nonzero(at.x), y: nonzero(at.y), z: nonzero(z) }
 }
 
-fn rgba(colour: [f64; 4]) -> Message {
-    colour.iter().enumerate().fold(Message::default(), |message, (n, &part)| message.double(n as u64 + 1, part))
-}
-
-fn timestamp(nanoseconds: u64) -> Message {
-    Message::default().integer(1, nanoseconds / 1_000_000_000).integer(2, nanoseconds % 1_000_000_000)
+fn timestamp(nanoseconds: u64) -> Timestamp {
+    Timestamp { seconds: (nanoseconds / 1_000_000_000) as i64, nanos: (nanoseconds % 1_000_000_000) as i32 }
 }
 
 /// Evenly spaced hues, so that neighbours in number differ.
-fn colour(robot: usize, count: usize, alpha: f64) -> [f64; 4] {
+fn colour(robot: usize, count: usize, alpha: f64) -> Color {
     let hue = robot as f64 / count.max(1) as f64 * 6.0;
     let channel = |shift: f64| {
         let away = ((hue + shift) % 6.0 - 3.0).abs() - 1.0;
         0.25 + 0.7 * away.clamp(0.0, 1.0)
     };
-    [channel(0.0), channel(4.0), channel(2.0), alpha]
+    Color { r: channel(0.0), g: channel(4.0), b: channel(2.0), a: alpha }
 }

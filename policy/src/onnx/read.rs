@@ -1,13 +1,14 @@
 //! What we look at in an ONNX file before any back-end sees it.
 
+use super::bounds::{self, WireError};
+use super::proto::{
+    AttributeProto, DecodeError, DimensionProto, GraphProto, Message, ModelProto, NodeProto, OperatorSetIdProto,
+    StringStringEntryProto, ValueInfoProto,
+};
 use super::tensor::{ElementType, Tensor};
-use super::wire::{Fields, Value, WireError};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fmt;
-
-/// Most nodes, initializers, ports or metadata entries of a model: a bound on memory.
-const MAX_ENTRIES: usize = 4096;
 
 /// Why bytes are not an ONNX model that we look into.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -18,7 +19,7 @@ pub enum OnnxError {
     /// A protobuf message without a graph.
     #[error("not an ONNX file: it holds no graph; export the actor again")]
     NoGraph,
-    /// Over `MAX_ENTRIES`.
+    /// More entries of a kind than any actor has: a bound on memory.
     #[error("the model has more than {most} {what}; an actor has a few dozen")]
     TooMany {
         /// What there is too much of.
@@ -136,31 +137,23 @@ pub struct Model {
 impl Model {
     /// Reads `bytes`. Memory is bounded by a small multiple of their number.
     pub fn read(bytes: &[u8]) -> Result<Self, OnnxError> {
-        let mut model = Model::default();
-        let mut graph = None;
-        let mut version = String::new();
-        for field in Fields::new(bytes) {
-            match field? {
-                (1, Value::Varint(number)) => model.ir_version = number as i64,
-                (2, Value::Bytes(name)) => model.producer = text(name),
-                (3, Value::Bytes(number)) => version = text(number),
-                (7, Value::Bytes(block)) => graph = Some(block),
-                (8, Value::Bytes(block)) => push(&mut model.opsets, read_opset(block)?, "operator sets")?,
-                (14, Value::Bytes(block)) => {
-                    let (key, value) = read_entry(block)?;
-                    model.metadata.insert(key, value);
-                    if model.metadata.len() > MAX_ENTRIES {
-                        return Err(OnnxError::TooMany { what: "metadata entries", most: MAX_ENTRIES });
-                    }
-                }
-                (25, _) => model.functions += 1,
-                _ => {}
-            }
-        }
+        bounds::check(bytes)?;
+        let file = ModelProto::decode(bytes)?;
+        let mut model = Model {
+            ir_version: file.ir_version.unwrap_or_default(),
+            producer: text(file.producer_name),
+            opsets: file.opset_import.into_iter().map(Opset::from).collect(),
+            functions: file.functions.len(),
+            ..Model::default()
+        };
+        let version = text(file.producer_version);
         if !version.is_empty() {
             model.producer = format!("{} {version}", model.producer);
         }
-        model.read_graph(graph.ok_or(OnnxError::NoGraph)?)?;
+        // Values are not cut: the contract lies in one.
+        let entry = |entry: StringStringEntryProto| (text(entry.key), entry.value.unwrap_or_default());
+        model.metadata = file.metadata_props.into_iter().map(entry).collect();
+        model.read_graph(file.graph.ok_or(OnnxError::NoGraph)?)?;
         Ok(model)
     }
 
@@ -169,52 +162,38 @@ impl Model {
         self.opsets.iter().find(|set| is_onnx(&set.domain)).map(|set| set.version)
     }
 
-    fn read_graph(&mut self, bytes: &[u8]) -> Result<(), OnnxError> {
-        for field in Fields::new(bytes) {
-            match field? {
-                (1, Value::Bytes(block)) => {
-                    let node = self.read_node(block)?;
-                    push(&mut self.nodes, node, "nodes")?;
-                }
-                (5, Value::Bytes(block)) => push(&mut self.tensors, Tensor::read(block)?, "tensors")?,
-                (11, Value::Bytes(block)) => push(&mut self.inputs, read_port(block)?, "inputs")?,
-                (12, Value::Bytes(block)) => push(&mut self.outputs, read_port(block)?, "outputs")?,
-                // Sparse initializers: no exporter of ours writes them, no check of ours reads them.
-                (15, _) => self.functions += 1,
-                _ => {}
-            }
+    fn read_graph(&mut self, graph: GraphProto) -> Result<(), OnnxError> {
+        for node in graph.node {
+            let node = self.read_node(node)?;
+            self.nodes.push(node);
         }
+        for tensor in graph.initializer {
+            self.tensors.push(Tensor::read(tensor)?);
+        }
+        // Sparse initializers: no exporter of ours writes them, no check of ours reads them.
+        self.functions += graph.sparse_initializer.len();
         // Old exporters list the initializers among the inputs.
         let tensors = &self.tensors;
-        self.inputs.retain(|port| tensors.iter().all(|tensor| tensor.name != port.name));
+        let stored = |port: &Port| tensors.iter().any(|tensor| tensor.name == port.name);
+        self.inputs = graph.input.into_iter().map(Port::from).filter(|port| !stored(port)).collect();
+        self.outputs = graph.output.into_iter().map(Port::from).collect();
         Ok(())
     }
 
-    fn read_node(&mut self, bytes: &[u8]) -> Result<Node, OnnxError> {
-        let mut node = Node { name: String::new(), operator: String::new(), domain: String::new(), subgraph: false };
-        for field in Fields::new(bytes) {
-            match field? {
-                (3, Value::Bytes(name)) => node.name = text(name),
-                (4, Value::Bytes(operator)) => node.operator = text(operator),
-                (5, Value::Bytes(attribute)) => node.subgraph |= self.read_attribute(attribute)?,
-                (7, Value::Bytes(domain)) => node.domain = text(domain),
-                _ => {}
-            }
+    fn read_node(&mut self, node: NodeProto) -> Result<Node, OnnxError> {
+        let mut subgraph = false;
+        for attribute in node.attribute {
+            subgraph |= self.read_attribute(attribute)?;
         }
-        Ok(node)
+        Ok(Node { name: text(node.name), operator: text(node.op_type), domain: text(node.domain), subgraph })
     }
 
     /// Notes the tensor of a Constant; tells whether the attribute is a graph.
-    fn read_attribute(&mut self, bytes: &[u8]) -> Result<bool, OnnxError> {
-        let mut subgraph = false;
-        for field in Fields::new(bytes) {
-            match field? {
-                (5 | 10, Value::Bytes(tensor)) => push(&mut self.tensors, Tensor::read(tensor)?, "tensors")?,
-                (6 | 11, Value::Bytes(_)) => subgraph = true,
-                _ => {}
-            }
+    fn read_attribute(&mut self, attribute: AttributeProto) -> Result<bool, OnnxError> {
+        for tensor in attribute.t.into_iter().chain(attribute.tensors) {
+            self.tensors.push(Tensor::read(tensor)?);
         }
-        Ok(subgraph)
+        Ok(attribute.g.is_some() || !attribute.graphs.is_empty())
     }
 }
 
@@ -223,88 +202,40 @@ pub(super) fn is_onnx(domain: &str) -> bool {
     domain.is_empty() || domain == "ai.onnx"
 }
 
-fn push<T>(list: &mut Vec<T>, item: T, what: &'static str) -> Result<(), OnnxError> {
-    if list.len() >= MAX_ENTRIES {
-        return Err(OnnxError::TooMany { what, most: MAX_ENTRIES });
-    }
-    list.push(item);
-    Ok(())
-}
-
 /// Names are short; a long one is cut so that no error message fills a screen.
-pub(super) fn text(bytes: &[u8]) -> String {
+pub(super) fn text(name: Option<String>) -> String {
     const MAX_NAME: usize = 200;
-    String::from_utf8_lossy(&bytes[..bytes.len().min(MAX_NAME)]).into_owned()
+    let mut name = name.unwrap_or_default();
+    name.truncate(name.floor_char_boundary(MAX_NAME));
+    name
 }
 
-fn read_opset(bytes: &[u8]) -> Result<Opset, OnnxError> {
-    let mut opset = Opset { domain: String::new(), version: 0 };
-    for field in Fields::new(bytes) {
-        match field? {
-            (1, Value::Bytes(domain)) => opset.domain = text(domain),
-            (2, Value::Varint(version)) => opset.version = version as i64,
-            _ => {}
-        }
+impl From<OperatorSetIdProto> for Opset {
+    fn from(set: OperatorSetIdProto) -> Self {
+        Self { domain: text(set.domain), version: set.version.unwrap_or_default() }
     }
-    Ok(opset)
 }
 
-/// A StringStringEntryProto. Values are not cut: the contract lies in one.
-fn read_entry(bytes: &[u8]) -> Result<(String, String), OnnxError> {
-    let (mut key, mut value) = (String::new(), String::new());
-    for field in Fields::new(bytes) {
-        match field? {
-            (1, Value::Bytes(block)) => key = text(block),
-            (2, Value::Bytes(block)) => value = String::from_utf8_lossy(block).into_owned(),
-            _ => {}
+impl From<ValueInfoProto> for Port {
+    fn from(value: ValueInfoProto) -> Self {
+        let tensor = value.r#type.and_then(|kind| kind.tensor_type).unwrap_or_default();
+        let dims = tensor.shape.unwrap_or_default().dim;
+        Self {
+            name: text(value.name),
+            element: ElementType(tensor.elem_type.unwrap_or_default()),
+            dims: dims.into_iter().map(Dim::from).collect(),
         }
     }
-    Ok((key, value))
 }
 
-fn read_port(bytes: &[u8]) -> Result<Port, OnnxError> {
-    let mut port = Port { name: String::new(), element: ElementType(0), dims: Vec::new() };
-    for field in Fields::new(bytes) {
-        match field? {
-            (1, Value::Bytes(name)) => port.name = text(name),
-            (2, Value::Bytes(kind)) => {
-                for field in Fields::new(kind) {
-                    if let (1, Value::Bytes(tensor)) = field? {
-                        read_tensor_type(tensor, &mut port)?;
-                    }
-                }
-            }
-            _ => {}
-        }
+impl From<DimensionProto> for Dim {
+    fn from(dim: DimensionProto) -> Self {
+        dim.dim_value.map_or_else(|| Dim::Free(text(dim.dim_param)), Dim::Fixed)
     }
-    Ok(port)
 }
 
-fn read_tensor_type(bytes: &[u8], port: &mut Port) -> Result<(), OnnxError> {
-    for field in Fields::new(bytes) {
-        match field? {
-            (1, Value::Varint(element)) => port.element = ElementType(element),
-            (2, Value::Bytes(shape)) => {
-                for field in Fields::new(shape) {
-                    if let (1, Value::Bytes(dim)) = field? {
-                        push(&mut port.dims, read_dim(dim)?, "dimensions")?;
-                    }
-                }
-            }
-            _ => {}
-        }
+impl From<DecodeError> for OnnxError {
+    fn from(error: DecodeError) -> Self {
+        OnnxError::Wire(error.into())
     }
-    Ok(())
-}
-
-fn read_dim(bytes: &[u8]) -> Result<Dim, OnnxError> {
-    let mut dim = Dim::Free(String::new());
-    for field in Fields::new(bytes) {
-        match field? {
-            (1, Value::Varint(size)) => dim = Dim::Fixed(size as i64),
-            (2, Value::Bytes(name)) => dim = Dim::Free(text(name)),
-            _ => {}
-        }
-    }
-    Ok(dim)
 }

@@ -1,13 +1,13 @@
 //! One tensor of a model: its name, type and shape, and whether all its numbers are finite.
 
 use super::OnnxError;
+use super::proto::TensorProto;
 use super::read::text;
-use super::wire::{Fields, Value, packed};
 use std::fmt;
 
 /// ONNX element type, by its number in the format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct ElementType(pub u64);
+pub struct ElementType(pub i32);
 
 impl ElementType {
     /// 32-bit floats: the only type that enters or leaves an actor.
@@ -70,69 +70,29 @@ pub struct Tensor {
 const MAX_RANK: usize = 8;
 
 impl Tensor {
-    /// Reads a TensorProto.
-    pub(super) fn read(bytes: &[u8]) -> Result<Self, OnnxError> {
-        let mut tensor = Tensor {
-            name: String::new(),
-            element: ElementType(0),
-            dims: Vec::new(),
-            first_not_finite: None,
-            external: false,
-        };
-        let mut raw: Option<&[u8]> = None;
-        let mut stored = 0usize; // Elements in the typed lists.
-        let mut note = |index: usize, finite: bool| {
-            if !finite && tensor.first_not_finite.is_none() {
-                tensor.first_not_finite = Some(index);
-            }
-        };
-        for field in Fields::new(bytes) {
-            match field? {
-                (1, Value::Varint(dim)) => tensor.dims.push(dim as i64),
-                (1, Value::Bytes(list)) => {
-                    for dim in packed(list).take(MAX_RANK + 1) {
-                        tensor.dims.push(dim? as i64);
-                    }
-                }
-                (2, Value::Varint(kind)) => tensor.element = ElementType(kind),
-                (4, Value::Bytes(list)) => {
-                    for four in list.chunks_exact(4) {
-                        note(stored, f32::from_le_bytes([four[0], four[1], four[2], four[3]]).is_finite());
-                        stored += 1;
-                    }
-                }
-                (4, Value::Fixed32(four)) => {
-                    note(stored, f32::from_le_bytes(four).is_finite());
-                    stored += 1;
-                }
-                (5 | 7 | 11, Value::Bytes(list)) => {
-                    for number in packed(list) {
-                        number?;
-                        stored += 1;
-                    }
-                }
-                (5 | 7 | 11, Value::Varint(_)) => stored += 1,
-                (6, _) => stored += 1,
-                (8, Value::Bytes(name)) => tensor.name = text(name),
-                (9, Value::Bytes(block)) => raw = Some(block),
-                (10, Value::Bytes(list)) => {
-                    for eight in list.as_chunks::<8>().0 {
-                        note(stored, f64::from_le_bytes(*eight).is_finite());
-                        stored += 1;
-                    }
-                }
-                (13, _) => tensor.external = true,
-                (14, Value::Varint(place)) => tensor.external |= place == 1,
-                _ => {}
-            }
-            if tensor.dims.len() > MAX_RANK {
-                return Err(OnnxError::Rank { name: tensor.name, most: MAX_RANK });
-            }
+    /// What we look at in `stored`.
+    pub(super) fn read(stored: TensorProto) -> Result<Self, OnnxError> {
+        let name = text(stored.name);
+        if stored.dims.len() > MAX_RANK {
+            return Err(OnnxError::Rank { name, most: MAX_RANK });
         }
-        if let Some(raw) = raw {
-            tensor.first_not_finite = first_not_finite(tensor.element, raw);
-        }
-        tensor.check_length(raw, stored)?;
+        let element = ElementType(stored.data_type.unwrap_or_default());
+        let raw = stored.raw_data.as_deref();
+        let (floats, doubles) = (&stored.float_data, &stored.double_data);
+        let in_lists = floats.iter().map(|float| float.is_finite());
+        let mut in_lists = in_lists.chain(doubles.iter().map(|double| double.is_finite()));
+        let tensor = Tensor {
+            name,
+            element,
+            dims: stored.dims,
+            first_not_finite: match raw {
+                Some(raw) => first_not_finite(element, raw),
+                None => in_lists.position(|finite| !finite),
+            },
+            external: !stored.external_data.is_empty() || stored.data_location == Some(1),
+        };
+        let integers = stored.int32_data.len() + stored.int64_data.len() + stored.uint64_data.len();
+        tensor.check_length(raw, floats.len() + doubles.len() + integers + stored.string_data.len())?;
         Ok(tensor)
     }
 

@@ -1,13 +1,18 @@
 //! Writes an actor as an ONNX file: `state` -> Gemm, Relu, ... -> `mean`, `log_std`.
 
-use super::wire::Message;
+use super::proto::{
+    AttributeProto, DimensionProto, GraphProto, Message, ModelProto, NodeProto, OperatorSetIdProto,
+    StringStringEntryProto, TensorProto, TensorShapeProto, TensorTypeProto, TypeProto, ValueInfoProto,
+};
+use super::tensor::ElementType;
 use std::collections::BTreeMap;
 
 /// Version of the file format that is written.
-const IR_VERSION: u64 = 8;
+const IR_VERSION: i64 = 8;
 /// Operator set that is written.
-const OPSET: u64 = 17;
-const FLOAT: u64 = 1;
+const OPSET: i64 = 17;
+/// The number of an attribute that is an integer.
+const INTEGER: i32 = 2;
 
 /// One fully connected layer: y = W x + b.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,75 +51,91 @@ impl ActorGraph {
 
     /// The bytes of the ONNX file. The layers must fit together (panics in debug builds otherwise).
     pub fn write(&self) -> Vec<u8> {
-        let mut graph = Message::new();
+        let mut graph = GraphProto { name: Some("actor".into()), ..Default::default() };
         let mut from = String::from("state");
         for (layer, dense) in self.hidden.iter().enumerate() {
             let name = format!("hidden{layer}");
-            graph = gemm(graph, dense, &from, &name, &format!("{name}.sum"));
-            graph = graph.message(1, node("Relu", &name, &[&format!("{name}.sum")], &name));
+            let sum = format!("{name}.sum");
+            dense.add_to(&mut graph, &from, &name, &sum);
+            graph.node.push(node("Relu", &name, &[&sum], &name));
             from = name;
         }
-        graph = gemm(graph, &self.mean, &from, "mean", "mean");
+        self.mean.add_to(&mut graph, &from, "mean", "mean");
+        graph.input.push(port("state", self.inputs()));
+        graph.output.push(port("mean", self.mean.outputs));
         if let Some(log_std) = &self.log_std {
-            graph = gemm(graph, log_std, &from, "log_std", "log_std.sum");
-            graph = graph.message(1, node("Clip", "log_std.clip", &["log_std.sum", "low", "high"], "log_std"));
+            log_std.add_to(&mut graph, &from, "log_std", "log_std.sum");
+            graph.node.push(node("Clip", "log_std.clip", &["log_std.sum", "low", "high"], "log_std"));
+            let (low, high) = self.log_std_bounds;
+            graph.initializer.extend([tensor("low", &[], &[low]), tensor("high", &[], &[high])]);
+            graph.output.push(port("log_std", log_std.outputs));
         }
-        graph = graph.bytes(2, "actor");
-        for dense in self.hidden.iter().chain([&self.mean]).chain(&self.log_std) {
-            debug_assert_eq!(dense.weight.len(), dense.inputs * dense.outputs);
-            debug_assert_eq!(dense.bias.len(), dense.outputs);
-        }
-        for (layer, dense) in self.hidden.iter().enumerate() {
-            graph = stored(graph, dense, &format!("hidden{layer}"));
-        }
-        graph = stored(graph, &self.mean, "mean");
-        if let Some(log_std) = &self.log_std {
-            graph = stored(graph, log_std, "log_std")
-                .message(5, tensor("low", &[], &[self.log_std_bounds.0]))
-                .message(5, tensor("high", &[], &[self.log_std_bounds.1]));
-        }
-        graph = graph.message(11, port("state", self.inputs()));
-        graph = graph.message(12, port("mean", self.mean.outputs));
-        if let Some(log_std) = &self.log_std {
-            graph = graph.message(12, port("log_std", log_std.outputs));
-        }
-        let model = Message::new().varint(1, IR_VERSION).bytes(2, "vodca").bytes(3, env!("CARGO_PKG_VERSION"));
-        let model = model.message(7, graph).message(8, Message::new().bytes(1, "").varint(2, OPSET));
-        let entry = |model: Message, (key, value): (&String, &String)| {
-            model.message(14, Message::new().bytes(1, key).bytes(2, value))
+        let entry = |(key, value): (&String, &String)| StringStringEntryProto {
+            key: Some(key.clone()),
+            value: Some(value.clone()),
         };
-        self.metadata.iter().fold(model, entry).finish()
+        let model = ModelProto {
+            ir_version: Some(IR_VERSION),
+            producer_name: Some("vodca".into()),
+            producer_version: Some(env!("CARGO_PKG_VERSION").into()),
+            graph: Some(graph),
+            opset_import: vec![OperatorSetIdProto { domain: Some(String::new()), version: Some(OPSET) }],
+            metadata_props: self.metadata.iter().map(entry).collect(),
+            functions: Vec::new(),
+        };
+        model.encode_to_vec()
     }
 }
 
-fn node(operator: &str, name: &str, inputs: &[&str], output: &str) -> Message {
-    let node = inputs.iter().fold(Message::new(), |node, input| node.bytes(1, input));
-    node.bytes(2, output).bytes(3, name).bytes(4, operator)
+impl Dense {
+    /// Appends `to = W from + b` and its tensors.
+    fn add_to(&self, graph: &mut GraphProto, from: &str, name: &str, to: &str) {
+        debug_assert!(self.inputs > 0 && self.outputs > 0);
+        debug_assert_eq!(self.weight.len(), self.inputs * self.outputs);
+        debug_assert_eq!(self.bias.len(), self.outputs);
+        let (weight, bias) = (format!("{name}.weight"), format!("{name}.bias"));
+        let mut gemm = node("Gemm", &format!("{name}.gemm"), &[from, &weight, &bias], to);
+        gemm.attribute.push(AttributeProto {
+            name: Some("transB".into()),
+            i: Some(1),
+            r#type: Some(INTEGER),
+            ..Default::default()
+        });
+        graph.node.push(gemm);
+        graph.initializer.push(tensor(&weight, &[self.outputs, self.inputs], &self.weight));
+        graph.initializer.push(tensor(&bias, &[self.outputs], &self.bias));
+    }
 }
 
-fn gemm(graph: Message, dense: &Dense, from: &str, name: &str, to: &str) -> Message {
-    debug_assert!(dense.inputs > 0 && dense.outputs > 0);
-    let transposed = Message::new().bytes(1, "transB").varint(3, 1).varint(20, 2);
-    let (weight, bias) = (format!("{name}.weight"), format!("{name}.bias"));
-    graph.message(1, node("Gemm", &format!("{name}.gemm"), &[from, &weight, &bias], to).message(5, transposed))
+fn node(operator: &str, name: &str, inputs: &[&str], output: &str) -> NodeProto {
+    NodeProto {
+        input: inputs.iter().copied().map(String::from).collect(),
+        output: vec![output.into()],
+        name: Some(name.into()),
+        op_type: Some(operator.into()),
+        ..Default::default()
+    }
 }
 
-fn stored(graph: Message, dense: &Dense, name: &str) -> Message {
-    let weight = tensor(&format!("{name}.weight"), &[dense.outputs, dense.inputs], &dense.weight);
-    graph.message(5, weight).message(5, tensor(&format!("{name}.bias"), &[dense.outputs], &dense.bias))
+fn tensor(name: &str, dims: &[usize], numbers: &[f32]) -> TensorProto {
+    TensorProto {
+        dims: dims.iter().map(|&dim| dim as i64).collect(),
+        data_type: Some(ElementType::FLOAT.0),
+        name: Some(name.into()),
+        raw_data: Some(numbers.iter().flat_map(|number| number.to_le_bytes()).collect()),
+        ..Default::default()
+    }
 }
 
-fn tensor(name: &str, dims: &[usize], numbers: &[f32]) -> Message {
-    let raw: Vec<u8> = numbers.iter().flat_map(|number| number.to_le_bytes()).collect();
-    let tensor = dims.iter().fold(Message::new(), |tensor, &dim| tensor.varint(1, dim as u64));
-    tensor.varint(2, FLOAT).bytes(8, name).bytes(9, raw)
-}
-
-fn port(name: &str, width: usize) -> Message {
-    let batch = Message::new().bytes(2, "batch");
-    let shape = Message::new().message(1, batch).message(1, Message::new().varint(1, width as u64));
-    let tensor = Message::new().varint(1, FLOAT).message(2, shape);
-    Message::new().bytes(1, name).message(2, Message::new().message(1, tensor))
+/// A port of `[batch, width]` float32.
+fn port(name: &str, width: usize) -> ValueInfoProto {
+    let batch = DimensionProto { dim_value: None, dim_param: Some("batch".into()) };
+    let width = DimensionProto { dim_value: Some(width as i64), dim_param: None };
+    let tensor_type = TensorTypeProto {
+        elem_type: Some(ElementType::FLOAT.0),
+        shape: Some(TensorShapeProto { dim: vec![batch, width] }),
+    };
+    ValueInfoProto { name: Some(name.into()), r#type: Some(TypeProto { tensor_type: Some(tensor_type) }) }
 }
 
 #[cfg(test)]
@@ -152,6 +173,38 @@ mod tests {
         assert_eq!(outputs, ["mean", "log_std"]);
         assert_eq!(model.outputs[1].dims[1], Dim::Fixed(2));
         assert_eq!(model.outputs[1].element, ElementType::FLOAT);
+    }
+
+    /// The actor in a file that [`ActorGraph::write`] wrote.
+    fn actor_of(file: &ModelProto) -> ActorGraph {
+        let graph = file.graph.as_ref().unwrap();
+        let numbers = |name: &str| -> Option<Vec<f32>> {
+            let stored = graph.initializer.iter().find(|tensor| tensor.name.as_deref() == Some(name))?;
+            let raw = stored.raw_data.as_ref()?;
+            Some(raw.as_chunks::<4>().0.iter().map(|four| f32::from_le_bytes(*four)).collect())
+        };
+        let dense = |name: &str| {
+            let (weight, bias) = (numbers(&format!("{name}.weight"))?, numbers(&format!("{name}.bias"))?);
+            Some(Dense { inputs: weight.len() / bias.len(), outputs: bias.len(), weight, bias })
+        };
+        let entry = |entry: &StringStringEntryProto| (entry.key.clone().unwrap(), entry.value.clone().unwrap());
+        ActorGraph {
+            hidden: (0..).map_while(|layer| dense(&format!("hidden{layer}"))).collect(),
+            mean: dense("mean").unwrap(),
+            log_std: dense("log_std"),
+            log_std_bounds: (numbers("low").unwrap()[0], numbers("high").unwrap()[0]),
+            metadata: file.metadata_props.iter().map(entry).collect(),
+        }
+    }
+
+    #[test]
+    fn an_actor_published_long_ago_is_written_to_the_same_bytes() {
+        let place = concat!(env!("CARGO_MANIFEST_DIR"), "/../policies/exchange_14/v000008/actor.onnx");
+        let bytes = std::fs::read(place).unwrap();
+        let file = ModelProto::decode(bytes.as_slice()).unwrap();
+        let mut written = ModelProto::decode(actor_of(&file).write().as_slice()).unwrap();
+        written.producer_version.clone_from(&file.producer_version); // whatever it was then
+        assert!(written.encode_to_vec() == bytes, "the file differs");
     }
 
     #[test]
