@@ -15,6 +15,7 @@ use evaluation::range::Numbers;
 use shared::place;
 use shared::stop::StopFlag;
 use std::path::PathBuf;
+use vodca::metrics::RunSummary;
 
 /// Arguments of `compare`.
 #[derive(Debug, clap::Args)]
@@ -176,8 +177,8 @@ fn write_summary(folder: &RunFolder, comparison: &Comparison) -> Result<(), Reco
     folder.write(name, text.as_bytes())
 }
 
-/// For each SPEC of a controller, which may stand for several rows: how many runs arrived and kept their distance, which
-/// did not arrive, and, where there is one layout and the paths can be held against each other, the shortest path.
+/// For each SPEC of a controller, which may stand for several rows: how many runs succeeded and kept their distance,
+/// which did not arrive, and, where there is one layout and the paths can be held against each other, the shortest path.
 fn verdicts(experiment: &Experiment, runs: &[Run]) -> Vec<String> {
     const NAMED: usize = 3;
     let name = |run: &&Run| {
@@ -193,10 +194,15 @@ fn verdicts(experiment: &Experiment, runs: &[Run]) -> Vec<String> {
     }
     let verdict = |spec: &String| {
         let all: Vec<&Run> = runs.iter().filter(|run| given(run) == spec).collect();
-        let below = all.iter().filter(|run| run.summary.pairs_below_min_separation > 0).count();
+        let count = |of: fn(&RunSummary) -> bool| all.iter().filter(|run| of(&run.summary)).count();
         let late: Vec<&Run> = all.iter().filter(|run| run.summary.completion_time.is_none()).copied().collect();
-        let mut text =
-            format!("{spec}: {} of {} arrived, {below} below min_separation", all.len() - late.len(), all.len());
+        let mut text = format!(
+            "{spec}: {} of {} succeeded, {} collided, {} below min_separation",
+            count(|run| run.success),
+            all.len(),
+            count(|run| run.collisions > 0),
+            count(|run| run.pairs_below_min_separation > 0),
+        );
         if experiment.entries.len() == 1 && all.len() > 1 {
             text += &paths(&all);
         }
@@ -311,6 +317,6 @@ mod tests {
         assert_eq!(run(args).unwrap(), Outcome::Done);
         let read = |name: &str| std::fs::read_to_string(out.join(name)).unwrap();
         assert_eq!((read("runs.csv").lines().count(), read("variants.csv").lines().count()), (1 + 2, 1 + 16));
-        assert!(read("table.md").contains("| best of |") && read("table.md").contains("| 16: time_horizon="));
+        assert!(read("table.md").contains("| variant |") && read("table.md").contains("| best of 16: time_horizon="));
     }
 }

@@ -1,5 +1,6 @@
 //! Which runs a comparison consists of. Everything that can be wrong is found before the first of them.
 
+use super::best::in_short;
 use super::controller::HorizonPart;
 use super::{ControllerSpec, Entry};
 use coordinator::policy::client::ClientError;
@@ -126,6 +127,11 @@ impl Experiment {
             }
         }
         Ok(())
+    }
+
+    /// What `job` changes as one variant of several, in short; empty where there is only one.
+    pub(crate) fn variant(&self, job: &Job) -> String {
+        in_short(&self.controllers[job.controller].variants[job.variant])
     }
 
     /// The names of the families, in the order in which they first appear, and the family of each entry.

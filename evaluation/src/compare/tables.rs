@@ -1,6 +1,5 @@
 //! The tables of a comparison: a row per family and controller for reading, a row per run for working on.
 
-use super::best::in_short;
 use super::{BestOf, Comparison, Experiment, Median, Row, Run};
 use crate::text_table::TextTable;
 use std::fmt;
@@ -25,7 +24,7 @@ pub fn by_family(comparison: &Comparison) -> TextTable {
         "step us",
         "mean",
     ];
-    header.extend(with_variants.then_some("best of"));
+    header.extend(with_variants.then_some("variant"));
     let mut table = TextTable::new(&header);
     for row in rows() {
         let best_of = || row.best_of.as_ref().map_or("-".into(), BestOf::to_string);
@@ -38,8 +37,8 @@ impl fmt::Display for BestOf {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { variants, variant, best_in, layouts } = self;
         match layouts {
-            1 => write!(f, "{variants}: {variant}"),
-            _ => write!(f, "{variants} in each layout; {variant} in {best_in} of {layouts}"),
+            1 => write!(f, "best of {variants}: {variant}"),
+            _ => write!(f, "best of {variants} in each layout, mostly {variant} ({best_in} of {layouts})"),
         }
     }
 }
@@ -112,7 +111,7 @@ pub fn by_run(experiment: &Experiment, runs: &[Run]) -> TextTable {
             run.activations.to_string(),
             run.infeasible.to_string(),
             run.shielded.to_string(),
-            in_short(&experiment.controllers[job.controller].variants[job.variant]),
+            experiment.variant(job),
             format!("{step_p50_us:.3}"),
             format!("{step_us:.3}"),
         ]);
@@ -172,11 +171,11 @@ mod tests {
         let jobs = experiment.jobs().unwrap();
         let Counted { runs, tried } = keep_best(&experiment, &jobs, run_all(&jobs, &StopFlag::default(), || ()).done);
         let text = by_family(&Comparison::new(&experiment, &runs, &tried)).csv();
-        let lasts: Vec<&str> = text.lines().map(|line| line.rsplit(',').next().unwrap()).collect();
+        let lasts: Vec<&str> = text.lines().map(|line| line.rsplit(',').next().unwrap().trim_matches('"')).collect();
         // Nobody arrives in three ticks: the first of sixteen equal ones.
         let (one, all) =
-            ("16: time_horizon=1 push=0.05 aim=0", "16 in each layout; time_horizon=1 push=0.05 aim=0 in 2 of 2");
-        assert_eq!(lasts, ["best of", one, one, all]);
+            ("best of 16: time_horizon=1 push=0.05 aim=0", " mostly time_horizon=1 push=0.05 aim=0 (2 of 2)");
+        assert_eq!(lasts, ["variant", one, one, all]);
         assert_eq!(runs.len(), 2 * 2);
     }
 

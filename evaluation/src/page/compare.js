@@ -19,6 +19,8 @@ runs.forEach(run => rowOf[run.row].own.push(run));
 
 const number = (value, digits) => value == null ? "–" : value.toFixed(digits);
 const interval = (value, digits) => value ? `${number(value.median, digits)} [${number(value.low, digits)}, ${number(value.high, digits)}]` : "–";
+const bestOf = ({ variants, variant, best_in, layouts }) => layouts > 1
+  ? `best of ${variants} in each layout, mostly ${variant} (${best_in} of ${layouts})` : `best of ${variants}: ${variant}`;
 const succeeded = (cell, successes, count) => {
   cell.textContent = `${successes} of ${count}`;
   cell.classList.toggle("failures", successes < count);
@@ -27,15 +29,11 @@ const COLUMNS = [
   ["family", () => {}],
   ["controller", (cell, row) => {
     cell.textContent = row.controller;
-    const best = row.best_of;
-    if (!best) return;
-    const which = best.layouts > 1 ? `; most often ${best.variant} (${best.best_in} of ${best.layouts})` : `: ${best.variant}`;
-    make(cell, "small", "", `best of ${best.variants}${best.layouts > 1 ? " in each layout" : ""}${which}`);
+    if (row.best_of) make(cell, "small", "", `best of ${row.best_of.variants} in each layout`).title = bestOf(row.best_of);
   }],
   ["succeeded", (cell, row) => succeeded(cell, row.successes, row.runs)],
   ["path / straight", (cell, row) => { cell.textContent = interval(row.ratio, 3); }],
   ["time (s)", (cell, row) => { cell.textContent = interval(row.time_s, 1); }],
-  ["ticks", (cell, row) => { cell.textContent = number(row.ticks?.median, 0); }],
   ["separation (m)", (cell, row) => { cell.textContent = number(row.min_separation, 3); }],
   ["below r_min", (cell, row) => { cell.textContent = row.runs_below; }],
   ["collided", (cell, row) => { cell.textContent = row.collisions; }],
@@ -75,7 +73,8 @@ function listLayouts(place, rows) {
       const middle = (valueOf, digits) => good.length ? number(median(good.map(valueOf)), digits) : "–";
       line.className = first ? "first" : "";
       line.insertCell().textContent = first ? layouts[layout] : "";
-      line.insertCell().textContent = name;
+      make(line.insertCell(), "span", "", name);
+      if (runs[0].variant) make(line.cells[1], "small", "", runs[0].variant);
       succeeded(line.insertCell(), good.length, runs.length);
       line.insertCell().textContent = middle(run => run.ratio, 3);
       line.insertCell().textContent = middle(run => run.time, 1);
@@ -106,6 +105,7 @@ function addSection(name, rows, number, open) {
   make(summary, "span", "muted", count > 1 ? `${count} layouts` : "");
   rows.filter(row => row.successes < row.runs)
     .forEach(row => make(summary, "small", "failures", `✕ ${row.controller}: ${row.successes} of ${row.runs}`));
+  rows.filter(row => row.best_of).forEach(row => make(section, "p", "muted", `${row.controller}: ${bestOf(row.best_of)}`));
   const place = make(section, "div", "charts");
   let drawnFor = 0;
   new ResizeObserver(() => {
@@ -161,11 +161,13 @@ const openTarget = () => {
   const section = /^#family-\d+$/.test(location.hash) && document.querySelector(location.hash);
   if (!section) return;
   section.open = true;
-  section.scrollIntoView();
+  // Its bars are drawn in the next frame: before that the page may be too short to scroll so far.
+  requestAnimationFrame(() => requestAnimationFrame(() => section.scrollIntoView()));
 };
 addEventListener("hashchange", openTarget);
 openTarget();
 
 document.querySelector(".indexed").classList.toggle("alone", !several);
 if (innerWidth <= 800) find("index").open = false;
-find("about").textContent = comparison.command.slice(1).join(" ");
+find("about").textContent = `${layouts.length} layouts, ${comparison.totals.length} controllers, ${runs.length} runs`;
+find("command").textContent = comparison.command.join(" ");

@@ -27,10 +27,12 @@ pub fn compare(comparison: &Comparison, experiment: &Experiment, runs: &[Run]) -
     let values: Vec<Value> = runs
         .iter()
         .map(|Run { job, summary, step_us, .. }| {
+            let variant = experiment.variant(job);
             json!({
                 "row": family_of[job.entry] * controllers + job.controller, "layout": job.entry,
                 "success": summary.success, "path": summary.path_cost, "ratio": summary.path_ratio,
                 "time": summary.completion_time, "separation": summary.min_separation, "stepUs": step_us,
+                "variant": (!variant.is_empty()).then_some(variant),
             })
         })
         .collect();
