@@ -1,7 +1,7 @@
 //! The command line: one subcommand per file of `commands/`.
 
 use crate::commands::{
-    bench, compare, evaluate, figures, golden, params, replay, report, rollout, run, scenario, search, sweep, verify,
+    bench, compare, evaluate, figures, former, golden, params, replay, report, rollout, run, scenario, search, verify,
 };
 use crate::exit::{Ending, Failure, Outcome};
 use clap::{Parser, Subcommand};
@@ -20,7 +20,7 @@ Examples:
   ./run.sh 14                                      fourteen robots change sides
   ./run.sh 4 --scenario four_gate --horizon random:3
   ./run.sh 8 --profile paper --horizon fixed:20 --set vodca.rows=each
-  ./run.sh sweep --scenario ex14_d --horizons 1..49 --profile paper --set vodca.rows=each
+  ./run.sh compare ex14_d --controllers paper:fixed:1..49 paper:random orca-best --set vodca.rows=each
   ./run.sh verify runs/20260131-120000-ex14_d-14
 Every command has its own --help.
 
@@ -30,8 +30,9 @@ Exit codes: 0 arrived, or asked to stop; 1 failed; 2 wrong usage; 3 a robot's pr
 enum Command {
     /// Run a team: one process per robot, recorded in a folder of its own (`./run.sh N` is short for it)
     Run(run::Args),
-    /// Run one scenario with many horizons or seeds in this process, one row each
-    Sweep(sweep::Args),
+    /// What became `compare`
+    #[command(hide = true)]
+    Sweep(former::Sweep),
     /// Compare controllers over scenarios and seeds in this process
     Compare(compare::Args),
     /// Put a policy beside fixed, random and searched horizons
@@ -66,7 +67,7 @@ impl Cli {
     pub fn run(self) -> Ending {
         match self.command {
             Command::Run(args) => run::run(args),
-            Command::Sweep(args) => sweep::run(args),
+            Command::Sweep(args) => former::sweep(args),
             Command::Compare(args) => compare::run(args),
             Command::Evaluate(args) => evaluate::run(args),
             Command::Search(args) => search::run(args),

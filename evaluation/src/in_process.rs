@@ -1,6 +1,5 @@
 //! A whole run in this process: what comparisons, searches and replays stand on.
 
-use coordinator::solver_check::SolverCheck;
 use std::convert::Infallible;
 use vodca::horizon_source::{HorizonSource, Horizons};
 use vodca::metrics::{RunMetrics, RunSummary};
@@ -51,13 +50,6 @@ pub fn run_whole(
     on_tick: impl FnMut(&[Step]),
 ) -> RunSummary {
     drive_whole(&mut Team::new(scenario, params, scenario.seed), scenario, params, source, on_tick).finish()
-}
-
-/// [`run_whole`] with every QP solved a second time by Clarabel.
-pub fn run_checked(scenario: &Scenario, params: &Params, source: &HorizonSource) -> (RunSummary, SolverCheck) {
-    let mut team = Team::checked(scenario, params, scenario.seed);
-    let metrics = drive_whole(&mut team, scenario, params, source, |_| ());
-    (metrics.finish(), team.comparison().unwrap_or_default().into())
 }
 
 /// [`drive`] with a table of horizons, to its end: nothing of it can fail.

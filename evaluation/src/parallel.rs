@@ -17,10 +17,10 @@ pub fn map<T: Sync, R: Send>(items: &[T], work: impl Fn(&T) -> R + Sync, done: i
 
 /// `work` for one item after the other on every core, until it gives `None` there; `start` makes what a core
 /// keeps from item to item. What was done stands at the place of its item.
-pub fn map_while<T: Sync, R: Send, S>(
-    items: &[T],
+pub fn map_while<'a, T: Sync, R: Send, S>(
+    items: &'a [T],
     start: impl Fn() -> S + Sync,
-    work: impl Fn(&mut S, &T) -> Option<R> + Sync,
+    work: impl Fn(&mut S, &'a T) -> Option<R> + Sync,
 ) -> Vec<Option<R>> {
     let next = AtomicUsize::new(0);
     let done = rayon::broadcast(|_| {

@@ -78,13 +78,36 @@ async function report(page) {
 }
 
 async function compare(page) {
-  await page.until("document.querySelectorAll('#families svg').length > 0");
-  const families = await count(page, "#families section");
-  assert.equal(await count(page, "#families svg"), 4 * families);
+  const all = await page.eval("families.size");
+  assert.equal(await count(page, "#families > details"), all);
   const rows = await page.eval("comparison.rows.length + totals.length");
   assert.equal(await count(page, "#figures tbody tr"), rows);
+  // What is closed is drawn when it is opened.
+  assert.equal(await count(page, "#families > details[open]"), all > 3 ? 0 : all);
+  await page.eval("document.querySelectorAll('#families > details').forEach(section => { section.open = true; })");
+  await page.until(`document.querySelectorAll('#families svg').length === ${4 * all}`);
   const failing = await page.eval("comparison.rows.filter(row => row.successes < row.runs).length");
   assert.equal(await count(page, "#families figure:first-of-type rect.failed"), failing, "failures are red");
+  if (all > 1) await manyFamilies(page, all);
+}
+
+// The index leads to a family, the filter leaves those that are looked for, layouts unfold.
+async function manyFamilies(page, all) {
+  const visible = selector => page.eval(`[...document.querySelectorAll(${JSON.stringify(selector)})].filter(e => !e.hidden).length`);
+  await page.eval("document.querySelectorAll('#families > details').forEach(section => { section.open = false; })");
+  await page.eval("document.querySelector('#index li:last-child a').click()");
+  await page.until(`document.getElementById('family-${all - 1}').open`);
+  await page.eval("(() => { const f = document.getElementById('filter'); f.value = shown[0].name; f.dispatchEvent(new Event('input')); })()");
+  const found = await page.eval("shown.filter(family => family.name.includes(shown[0].name)).length");
+  assert.equal(await visible("#families > details"), found);
+  assert.equal(await visible("#index li"), found);
+  assert.equal(await visible("#figures tbody tr"), await page.eval("totals.length") * (1 + found));
+  await page.eval("(() => { const f = document.getElementById('filter'); f.value = ''; f.dispatchEvent(new Event('input')); })()");
+  const folded = await count(page, ".layouts");
+  if (folded) {
+    await page.eval("document.querySelectorAll('.layouts').forEach(list => { list.open = true; })");
+    await page.until(`document.querySelectorAll('.layouts table').length === ${folded}`);
+  }
 }
 
 async function live(page) {

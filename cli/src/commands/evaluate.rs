@@ -6,7 +6,7 @@ use crate::exit::{Ending, Failure, Outcome};
 use crate::progress::Progress;
 use crate::stdout;
 use coordinator::record::folder::write_new;
-use evaluation::compare::{Contender, Entry, HorizonPart, Job, Plan, Run, Sample, expand, run_all};
+use evaluation::compare::{ControllerSpec, Entry, Experiment, HorizonPart, Run, Sample, expand, run_all};
 use evaluation::search::{POPULATION, constants};
 use evaluation::text_table::TextTable;
 use shared::place;
@@ -97,7 +97,8 @@ pub fn run(args: Args) -> Ending {
         if jitter == 0.0 && title != "exactly as it is" || stop.is_set() {
             continue;
         }
-        let (plan, jobs) = plan(&args, &entries, constants.as_ref(), jitter)?;
+        let experiment = experiment(&args, &entries, constants.as_ref(), jitter);
+        let jobs = experiment.jobs().map_err(Failure::usage)?;
         let progress = Progress::of_work(jobs.len());
         let runs = run_all(&jobs, &stop, || progress.advance());
         progress.finish();
@@ -110,9 +111,9 @@ pub fn run(args: Args) -> Ending {
         };
         let moved = if jitter > 0.0 { format!(" by up to {jitter} m, {} seeds", args.seeds) } else { String::new() };
         stdout::line(format_args!("{} {}, {title}{moved}", args.scenario, args.profile))?;
-        stdout::text(table(&rows(&plan, &jobs, &done, constants.as_ref())).aligned())?;
+        stdout::text(table(&rows(&experiment, &done, constants.as_ref())).aligned())?;
         stdout::line("")?;
-        csv += &csv_of(jitter, &plan, &jobs, &done, csv.is_empty());
+        csv += &csv_of(jitter, &experiment, &done, csv.is_empty());
     }
     if let Some(out) = &args.out {
         write_new(out, csv.as_bytes()).map_err(Failure::usage)?;
@@ -133,42 +134,35 @@ fn best_constants(args: &Args, entries: &[Entry], stop: &StopFlag) -> Result<Opt
 }
 
 /// What is evaluated, in the order of the runs: the policy, horizons 1 to 49, the constants, random ones.
-fn plan(
-    args: &Args,
-    entries: &[Entry],
-    constants: Option<&HorizonSpec>,
-    jitter: f64,
-) -> Result<(Plan, Vec<Job>), Failure> {
-    let table = |name: &str, spec: HorizonSpec| Contender::new(name, args.profile, HorizonPart::Table(spec));
-    let mut contenders = vec![Contender::new(POLICY, args.profile, HorizonPart::Policy(args.policy.clone()))];
+fn experiment(args: &Args, entries: &[Entry], constants: Option<&HorizonSpec>, jitter: f64) -> Experiment {
+    let table = |name: &str, spec: HorizonSpec| ControllerSpec::new(name, args.profile, HorizonPart::Table(spec));
+    let mut controllers = vec![ControllerSpec::new(POLICY, args.profile, HorizonPart::Policy(args.policy.clone()))];
     for steps in 1..=MAX_HORIZON {
         let horizon = Horizon::saturating(steps as i64);
-        contenders.push(table(&format!("fixed:{steps}"), HorizonSpec::Fixed(vec![horizon])));
+        controllers.push(table(&format!("fixed:{steps}"), HorizonSpec::Fixed(vec![horizon])));
     }
-    contenders.extend(constants.map(|spec| table(CONSTANTS, spec.clone())));
-    contenders.push(table(RANDOM, HorizonSpec::Random(None)));
+    controllers.extend(constants.map(|spec| table(CONSTANTS, spec.clone())));
+    controllers.push(table(RANDOM, HorizonSpec::Random(None)));
     let last = args.first_seed + if jitter > 0.0 { args.seeds } else { args.seeds.max(SEQUENCES) };
-    let plan = Plan {
+    Experiment {
         entries: entries.to_vec(),
-        contenders,
+        controllers,
         seeds: (args.first_seed..last).collect(),
         start_jitter: jitter,
         sets: args.set.clone(),
         max_ticks: None,
-    };
-    let jobs = plan.jobs().map_err(Failure::usage)?;
-    Ok((plan, jobs))
+        check_solver: false,
+    }
 }
 
 /// The rows of the table, the best of several under what they are the best of.
-fn rows(plan: &Plan, jobs: &[Job], runs: &[Run], constants: Option<&HorizonSpec>) -> Vec<Row> {
-    let row = |name: &str, contender: usize| {
-        let own: Vec<&Run> =
-            jobs.iter().zip(runs).filter(|(job, _)| job.contender == contender).map(|(_, run)| run).collect();
+fn rows(experiment: &Experiment, runs: &[Run], constants: Option<&HorizonSpec>) -> Vec<Row> {
+    let row = |name: &str, controller: usize| {
+        let own: Vec<&Run> = runs.iter().filter(|run| run.job.controller == controller).collect();
         let good: Vec<&Run> = own.iter().copied().filter(|run| run.summary.success).collect();
         Row {
             name: name.into(),
-            what: plan.contenders[contender].to_string(),
+            what: experiment.controllers[controller].to_string(),
             runs: own.len(),
             successes: good.len(),
             path: Sample::of(good.iter().map(|run| run.summary.path_cost)),
@@ -181,7 +175,7 @@ fn rows(plan: &Plan, jobs: &[Job], runs: &[Run], constants: Option<&HorizonSpec>
     let mut rows = vec![row("policy", 0)];
     rows.extend(best("best fixed of the paper's grid", &mut GRID.into_iter()));
     rows.extend(best("best fixed of all 49", &mut (1..=MAX_HORIZON)));
-    let random = row("random, all sequences", plan.contenders.len() - 1);
+    let random = row("random, all sequences", experiment.controllers.len() - 1);
     let shortest = random.path.least();
     rows.push(random);
     if let Some(path) = shortest {
@@ -216,16 +210,16 @@ fn table(rows: &[Row]) -> TextTable {
     table
 }
 
-fn csv_of(jitter: f64, plan: &Plan, jobs: &[Job], runs: &[Run], header: bool) -> String {
+fn csv_of(jitter: f64, experiment: &Experiment, runs: &[Run], header: bool) -> String {
     let mut text = String::new();
     if header {
         text += "jitter_start_m,scenario,horizons,seed,success,ticks,path_m,min_separation_m\n";
     }
-    for (job, run) in jobs.iter().zip(runs) {
-        let (contender, summary) = (&plan.contenders[job.contender], &run.summary);
+    for Run { job, summary, .. } in runs {
+        let controller = &experiment.controllers[job.controller];
         let least = summary.min_separation.map_or(String::new(), |metres| metres.to_string());
         text += &format!(
-            "{jitter},{},{contender},{},{},{},{},{least}\n",
+            "{jitter},{},{controller},{},{},{},{},{least}\n",
             job.scenario.name, job.scenario.seed, summary.success, summary.ticks, summary.path_cost
         );
     }

@@ -41,7 +41,16 @@ pub fn expand(spec: &str) -> Result<Vec<Entry>, EntryError> {
         return Ok(seeds.into_iter().map(of).collect());
     }
     let names = suite::expand(spec)?;
-    Ok(names.into_iter().map(|name| Entry { family: suite::family(&name).into(), spec: name, drawn: false }).collect())
+    Ok(names.into_iter().map(|name| Entry { family: family(&name).into(), spec: name, drawn: false }).collect())
+}
+
+/// Of a built-in scenario [`suite::family`]; a file belongs to the others of its folder that differ by a number at the
+/// end only: `mine_1.toml` and `mine_s2.toml` are of `mine`.
+fn family(spec: &str) -> &str {
+    let Some(stem) = spec.strip_suffix(".toml") else { return suite::family(spec) };
+    let unnumbered = stem.trim_end_matches(|c: char| c.is_ascii_digit());
+    let Some(name) = unnumbered.strip_suffix(['_', '-']).or_else(|| unnumbered.strip_suffix("_s")) else { return stem };
+    if unnumbered.len() == stem.len() || name.is_empty() || name.ends_with('/') { stem } else { name }
 }
 
 /// `FORM:ARGUMENTS` and the range at its end, when there is one.
@@ -82,6 +91,25 @@ mod tests {
             ("box:8:0:0", "box:32:0:24", "box:32:3:199")
         );
         assert!(expand("random-boxes:3").unwrap().iter().all(|entry| entry.drawn && entry.family == "random-boxes"));
+    }
+
+    #[test]
+    fn files_that_differ_by_a_number_are_one_family() {
+        let families = [
+            ("mine_1.toml", "mine"),
+            ("mine_s20.toml", "mine"),
+            ("mine-07.toml", "mine"),
+            ("rooms/mine_1.toml", "rooms/mine"),
+            ("mine.toml", "mine"),
+            ("mine16.toml", "mine16"),
+            ("mine_wide.toml", "mine_wide"),
+            ("mine_.toml", "mine_"),
+            ("rooms/_1.toml", "rooms/_1"),
+            ("2.toml", "2"),
+        ];
+        for (file, family) in families {
+            assert_eq!(expand(file).unwrap()[0].family, family, "{file}");
+        }
     }
 
     #[test]

@@ -1,7 +1,9 @@
 //! The figures of a comparison by family and controller: `summary.json` and the table for reading.
 
-use super::{Job, Median, Plan, Run, Sample};
+use super::best::in_short;
+use super::{ControllerSpec, Experiment, Median, Run, Sample, Tried};
 use coordinator::record::about::{Machine, Versions};
+use coordinator::solver_check::SolverCheck;
 use serde::Serialize;
 
 /// Version of the format; fields are only added within a version.
@@ -22,6 +24,8 @@ pub struct Comparison {
     pub sets: Vec<String>,
     /// Last tick in place of the scenarios'.
     pub max_ticks: Option<u64>,
+    /// What solving every QP twice has found over all runs, where that was asked for.
+    pub solver_check: Option<SolverCheck>,
     /// What ran.
     pub versions: Versions,
     /// Where it ran.
@@ -32,6 +36,19 @@ pub struct Comparison {
     pub totals: Vec<Row>,
 }
 
+/// How the variants of a controller fared in a family: in each layout only the runs of its best one count.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct BestOf {
+    /// Number of variants.
+    pub variants: usize,
+    /// The one that was best in most layouts, the first of equal ones.
+    pub variant: String,
+    /// Layouts in which it was.
+    pub best_in: usize,
+    /// Layouts of the family.
+    pub layouts: usize,
+}
+
 /// The runs of one family with one controller. Medians are over the runs that succeeded; separations over
 /// all runs.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -40,6 +57,8 @@ pub struct Row {
     pub family: String,
     /// The controller as given.
     pub controller: String,
+    /// What its runs are the best of, when it has variants.
+    pub best_of: Option<BestOf>,
     /// Number of runs.
     pub runs: usize,
     /// Runs in which all arrived and nobody collided.
@@ -68,48 +87,67 @@ pub struct Row {
 pub(super) const ALL: &str = "all";
 
 impl Comparison {
-    /// Puts `runs`, the results of `jobs` in their order, together.
-    pub fn new(plan: &Plan, jobs: &[Job], runs: &[Run]) -> Self {
-        let mut families: Vec<&str> = Vec::new();
-        for entry in &plan.entries {
-            if !families.contains(&entry.family.as_str()) {
-                families.push(&entry.family);
-            }
+    /// Puts together the runs that count, and which variants were the best ([`keep_best`](super::keep_best)).
+    pub fn new(experiment: &Experiment, runs: &[Run], tried: &[Tried]) -> Self {
+        let (families, family_of) = experiment.families();
+        let controllers = experiment.controllers.len();
+        let mut groups: Vec<Vec<&Run>> = vec![Vec::new(); families.len() * controllers];
+        for run in runs {
+            groups[family_of[run.job.entry] * controllers + run.job.controller].push(run);
         }
-        let group = |contender: usize, family: Option<&str>| -> Vec<&Run> {
-            let belongs = |job: &Job| {
-                job.contender == contender && family.is_none_or(|family| plan.entries[job.entry].family == family)
+        let row = |family: Option<usize>, controller: usize, runs: &[&Run]| {
+            let name = family.map_or(ALL, |family| families[family]).into();
+            let spec = &experiment.controllers[controller];
+            let belongs = |one: &&Tried| {
+                one.best && one.controller == controller && family.is_none_or(|family| family_of[one.entry] == family)
             };
-            jobs.iter().zip(runs).filter(|(job, _)| belongs(job)).map(|(_, run)| run).collect()
+            Row::of(name, spec, BestOf::new(spec, tried.iter().filter(belongs)), runs)
         };
-        let controllers = || plan.contenders.iter().map(ToString::to_string).enumerate();
-        let row = |family: Option<&str>, (index, controller): (usize, String)| {
-            Row::of(family.unwrap_or(ALL).into(), controller, &group(index, family))
-        };
+        let all =
+            |controller: usize| -> Vec<&Run> { runs.iter().filter(|run| run.job.controller == controller).collect() };
         Self {
             version: VERSION,
             command: std::iter::once("./run.sh".to_string()).chain(std::env::args().skip(1)).collect(),
-            seeds: plan.seeds.clone(),
-            start_jitter: plan.start_jitter,
-            sets: plan.sets.clone(),
-            max_ticks: plan.max_ticks,
+            seeds: experiment.seeds.clone(),
+            start_jitter: experiment.start_jitter,
+            sets: experiment.sets.clone(),
+            max_ticks: experiment.max_ticks,
+            solver_check: runs.iter().filter_map(|run| run.solver_check).reduce(SolverCheck::with),
             versions: Versions::here(),
             machine: Machine::here(),
-            rows: families
+            rows: groups
                 .iter()
-                .flat_map(|family| controllers().map(|controller| row(Some(family), controller)))
+                .enumerate()
+                .map(|(n, runs)| row(Some(n / controllers), n % controllers, runs))
                 .collect(),
-            totals: controllers().map(|controller| row(None, controller)).collect(),
+            totals: (0..controllers).map(|controller| row(None, controller, &all(controller))).collect(),
         }
     }
 }
 
+impl BestOf {
+    /// `None`: the controller has no variants, or no layout was finished.
+    fn new<'a>(spec: &ControllerSpec, best: impl Iterator<Item = &'a Tried>) -> Option<Self> {
+        let mut wins = vec![0usize; spec.variants.len()];
+        best.for_each(|one| wins[one.variant] += 1);
+        let layouts = wins.iter().sum();
+        let (variant, &best_in) = wins.iter().enumerate().rev().max_by_key(|(_, wins)| **wins)?;
+        (layouts > 0).then(|| Self {
+            variants: wins.len(),
+            variant: in_short(&spec.variants[variant]),
+            best_in,
+            layouts,
+        })
+    }
+}
+
 impl Row {
-    fn of(family: String, controller: String, runs: &[&Run]) -> Self {
+    fn of(family: String, controller: &ControllerSpec, best_of: Option<BestOf>, runs: &[&Run]) -> Self {
         let good: Vec<_> = runs.iter().map(|run| &run.summary).filter(|run| run.success).collect();
         Self {
             family,
-            controller,
+            controller: controller.to_string(),
+            best_of,
             runs: runs.len(),
             successes: good.len(),
             ratio: Sample::of(good.iter().filter_map(|run| run.path_ratio)).median(),

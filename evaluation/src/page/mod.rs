@@ -6,7 +6,7 @@
 pub mod recorded;
 pub mod run_data;
 
-use crate::compare::{Comparison, Job, Plan, Run};
+use crate::compare::{Comparison, Experiment, Run};
 use coordinator::page::{SCENE_SCRIPTS, fill};
 use recorded::Recorded;
 use serde_json::{Value, json};
@@ -20,25 +20,25 @@ pub fn report(runs: &[Recorded]) -> String {
     fill(include_str!("report.html"), &title, &scripts, &data)
 }
 
-/// The page of a comparison: `runs` are the results of `jobs` in their order.
-pub fn compare(comparison: &Comparison, plan: &Plan, jobs: &[Job], runs: &[Run]) -> String {
-    let rows = &comparison.rows;
-    let row_of = |job: &Job| {
-        let (family, controller) = (&plan.entries[job.entry].family, plan.contenders[job.contender].to_string());
-        rows.iter().position(|row| row.family == *family && row.controller == controller)
-    };
-    let values: Vec<Value> = jobs
+/// The page of a comparison.
+pub fn compare(comparison: &Comparison, experiment: &Experiment, runs: &[Run]) -> String {
+    let (_, family_of) = experiment.families();
+    let controllers = experiment.controllers.len();
+    let values: Vec<Value> = runs
         .iter()
-        .zip(runs)
-        .map(|(job, Run { summary, step_us, .. })| {
+        .map(|Run { job, summary, step_us, .. }| {
+            let variant = experiment.variant(job);
             json!({
-                "row": row_of(job), "success": summary.success, "path": summary.path_cost,
+                "row": family_of[job.entry] * controllers + job.controller, "layout": job.entry,
+                "success": summary.success, "path": summary.path_cost, "ratio": summary.path_ratio,
                 "time": summary.completion_time, "separation": summary.min_separation, "stepUs": step_us,
+                "variant": (!variant.is_empty()).then_some(variant),
             })
         })
         .collect();
-    let min_separation = jobs.first().map(Job::min_separation);
-    let data = json!({ "comparison": comparison, "runs": values, "minSeparation": min_separation });
-    let scripts = [include_str!("chart.js"), include_str!("compare.js")];
+    let layouts: Vec<&str> = experiment.entries.iter().map(|entry| entry.spec.as_str()).collect();
+    let min_separation = runs.first().map(|run| run.job.min_separation());
+    let data = json!({ "comparison": comparison, "layouts": layouts, "runs": values, "minSeparation": min_separation });
+    let scripts = [include_str!("chart.js"), include_str!("compare_bars.js"), include_str!("compare.js")];
     fill(include_str!("compare.html"), "Comparison of controllers", &scripts, &data)
 }

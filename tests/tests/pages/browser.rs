@@ -84,6 +84,28 @@ fn a_comparison_has_its_bars_and_its_table() {
 }
 
 #[test]
+fn files_of_a_family_share_a_section_and_unfold() {
+    let place = tempfile::tempdir().unwrap();
+    let out = place.path().join("compared");
+    let mut arguments = vec!["compare".to_string()];
+    for family in ["ours", "theirs", "gate", "cross"] {
+        for number in 1..=2 {
+            let file = place.path().join(format!("{family}_{number}.toml"));
+            std::fs::copy(own("../scenarios/two_setpoint.toml"), &file).unwrap();
+            arguments.push(file.display().to_string());
+        }
+    }
+    let rest = ["--controllers", "paper:fixed:20", "orca-best", "--seeds", "1", "--max-ticks", "90", "--out"];
+    arguments.extend(rest.map(String::from));
+    arguments.push(out.display().to_string());
+    success(coordinator(&arguments.iter().map(String::as_str).collect::<Vec<_>>()));
+    let summary = std::fs::read_to_string(out.join("summary.json")).unwrap();
+    let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
+    assert_eq!(summary["rows"].as_array().unwrap().len(), 4 * 2, "a row per family and controller");
+    check("compare", out.join("report.html").to_str().unwrap());
+}
+
+#[test]
 fn a_run_is_shown_while_it_goes_on() {
     let mut run = Run::start(Robots::Real, "14 --real-time --live --set model.max_speed=0.3 --max-ticks 120");
     run.wait_until_driving();

@@ -1,9 +1,11 @@
 //! Which runs a comparison consists of. Everything that can be wrong is found before the first of them.
 
-use super::contender::HorizonPart;
-use super::{Contender, Entry};
+use super::best::in_short;
+use super::controller::HorizonPart;
+use super::{ControllerSpec, Entry};
 use coordinator::policy::client::ClientError;
 use coordinator::policy::found::{FindError, FoundPolicy};
+use std::collections::BTreeMap;
 use vodca::horizon_source::{HorizonSource, HorizonSourceError, HorizonSpec};
 use vodca::params::{ControllerKind, Params};
 use vodca::scenario::{Scenario, ScenarioError, SetupError, set_up};
@@ -18,10 +20,10 @@ pub enum CompareError {
     #[error(transparent)]
     Scenario(#[from] ScenarioError),
     /// A horizon.
-    #[error("controller `{contender}` in {scenario}: {source}")]
+    #[error("controller `{controller}` in {scenario}: {source}")]
     Horizon {
         /// As given.
-        contender: String,
+        controller: String,
         /// Name of the scenario.
         scenario: String,
         /// What is wrong with it.
@@ -37,27 +39,31 @@ pub enum CompareError {
 
 /// What is compared.
 #[derive(Clone, Debug)]
-pub struct Plan {
+pub struct Experiment {
     /// The scenarios, suites expanded.
     pub entries: Vec<Entry>,
     /// The controllers.
-    pub contenders: Vec<Contender>,
+    pub controllers: Vec<ControllerSpec>,
     /// Seeds of whatever is random; what is not runs once, with the scenario's own seed.
     pub seeds: Vec<u64>,
     /// Every start moves by a seeded draw of up to so much per axis, m.
     pub start_jitter: f64,
-    /// Changes of parameters for all, as for `--set`; a contender's own win.
+    /// Changes of parameters for all, as for `--set`; a controller's own win.
     pub sets: Vec<String>,
     /// Last tick instead of the scenarios'.
     pub max_ticks: Option<u64>,
+    /// Every QP is solved a second time with Clarabel.
+    pub check_solver: bool,
 }
 
 /// One run to do.
 #[derive(Clone, Debug)]
 pub struct Job {
-    /// Index into [`Plan::contenders`].
-    pub contender: usize,
-    /// Index into [`Plan::entries`].
+    /// Index into [`Experiment::controllers`].
+    pub controller: usize,
+    /// Index into the controller's variants.
+    pub variant: usize,
+    /// Index into [`Experiment::entries`].
     pub entry: usize,
     /// The scenario with its starts moved and its seed set.
     pub scenario: Scenario,
@@ -65,6 +71,7 @@ pub struct Job {
     pub horizon: String,
     pub(super) params: Params,
     pub(super) source: Source,
+    pub(super) check_solver: bool,
 }
 
 /// Where the horizons of a job come from.
@@ -76,39 +83,73 @@ pub(super) enum Source {
     Policy(FoundPolicy),
 }
 
-impl Plan {
-    /// All runs: scenario by scenario, contender by contender, horizon by horizon, seed by seed.
+impl Experiment {
+    /// All runs: scenario by scenario, controller by controller, variant by variant, horizon by horizon, seed by seed.
     ///
     /// # Errors
     /// The first scenario, parameter, start or horizon that cannot be used.
     pub fn jobs(&self) -> Result<Vec<Job>, CompareError> {
         let mut jobs = Vec::new();
-        for (entry, Entry { spec, drawn, .. }) in self.entries.iter().enumerate() {
-            for (index, contender) in self.contenders.iter().enumerate() {
-                let sets: Vec<String> = self.sets.iter().chain(&contender.sets).cloned().collect();
-                let (scenario, params) = set_up(Some(spec), None, contender.profile, &sets)?;
-                for horizon in &contender.horizons {
-                    let once = *drawn || !self.is_random(&params, horizon);
-                    let own = [scenario.seed];
-                    for &seed in if once { &own[..] } else { &self.seeds } {
-                        let scenario = self.seeded(&scenario, &params, seed)?;
-                        let source = self.source(contender, horizon, &scenario, &params)?;
-                        let horizon = match params.controller.kind {
-                            ControllerKind::Vodca => horizon.to_string(),
-                            ControllerKind::Orca => "-".into(),
-                        };
-                        let params = params.clone();
-                        jobs.push(Job { contender: index, entry, scenario, horizon, params, source });
-                    }
+        for entry in 0..self.entries.len() {
+            for (controller, spec) in self.controllers.iter().enumerate() {
+                for variant in 0..spec.variants.len() {
+                    self.add_jobs(&mut jobs, entry, controller, variant)?;
                 }
             }
         }
         Ok(jobs)
     }
 
+    /// The runs of one row of one scenario: horizon by horizon, seed by seed.
+    fn add_jobs(
+        &self,
+        jobs: &mut Vec<Job>,
+        entry: usize,
+        controller: usize,
+        variant: usize,
+    ) -> Result<(), CompareError> {
+        let (Entry { spec, drawn, .. }, chosen) = (&self.entries[entry], &self.controllers[controller]);
+        let sets: Vec<String> =
+            self.sets.iter().chain(&chosen.sets).chain(&chosen.variants[variant]).cloned().collect();
+        let (scenario, params) = set_up(Some(spec), None, chosen.profile, &sets)?;
+        for part in &chosen.horizons {
+            let once = *drawn || !self.is_random(&params, part);
+            let own = [scenario.seed];
+            for &seed in if once { &own[..] } else { &self.seeds } {
+                let scenario = self.seeded(&scenario, &params, seed)?;
+                let source = self.source(chosen, part, &scenario, &params)?;
+                let horizon = match params.controller.kind {
+                    ControllerKind::Vodca => part.to_string(),
+                    ControllerKind::Orca => "-".into(),
+                };
+                let (params, check_solver) = (params.clone(), self.check_solver);
+                jobs.push(Job { controller, variant, entry, scenario, horizon, params, source, check_solver });
+            }
+        }
+        Ok(())
+    }
+
+    /// What `job` changes as one variant of several, in short; empty where there is only one.
+    pub(crate) fn variant(&self, job: &Job) -> String {
+        in_short(&self.controllers[job.controller].variants[job.variant])
+    }
+
+    /// The names of the families, in the order in which they first appear, and the family of each entry.
+    pub(crate) fn families(&self) -> (Vec<&str>, Vec<usize>) {
+        let (mut names, mut places) = (Vec::new(), BTreeMap::new());
+        let of_entry = self.entries.iter().map(|entry| {
+            *places.entry(entry.family.as_str()).or_insert_with(|| {
+                names.push(entry.family.as_str());
+                names.len() - 1
+            })
+        });
+        let of_entry = of_entry.collect();
+        (names, of_entry)
+    }
+
     fn source(
         &self,
-        contender: &Contender,
+        controller: &ControllerSpec,
         horizon: &HorizonPart,
         scenario: &Scenario,
         params: &Params,
@@ -123,7 +164,7 @@ impl Plan {
                 HorizonSource::new(spec, scenario.robots.len(), scenario.seed, params.horizon.jitter)
                     .map(Source::Table)
                     .map_err(|source| CompareError::Horizon {
-                        contender: contender.to_string(),
+                        controller: controller.to_string(),
                         scenario: scenario.name.clone(),
                         source,
                     })
@@ -161,29 +202,30 @@ impl Plan {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::compare::{Contenders, expand};
+    use crate::compare::{ControllerSpecs, expand};
     use policy::contract::Contract;
     use policy::onnx::{ActorGraph, Dense};
 
-    fn runs(contender: &str, scenario: &str, change: impl Fn(&mut Plan)) -> Result<Vec<(String, u64)>, String> {
-        let mut plan = Plan {
+    fn runs(controller: &str, scenario: &str, change: impl Fn(&mut Experiment)) -> Result<Vec<(String, u64)>, String> {
+        let mut experiment = Experiment {
             entries: expand(scenario).unwrap(),
-            contenders: contender.parse::<Contenders>().unwrap().0,
+            controllers: controller.parse::<ControllerSpecs>().unwrap().0,
             seeds: vec![0, 1, 2],
             start_jitter: 0.0,
             sets: vec![],
             max_ticks: None,
+            check_solver: false,
         };
-        change(&mut plan);
-        let jobs = plan.jobs().map_err(|error| error.to_string())?;
+        change(&mut experiment);
+        let jobs = experiment.jobs().map_err(|error| error.to_string())?;
         Ok(jobs.into_iter().map(|job| (job.horizon, job.scenario.seed)).collect())
     }
 
     #[test]
     fn only_what_is_random_runs_with_every_seed() {
-        let count = |contender: &str, set: &str| {
+        let count = |controller: &str, set: &str| {
             let sets: Vec<String> = set.split_whitespace().map(String::from).collect();
-            runs(contender, "two_setpoint", |plan| plan.sets = sets.clone()).unwrap().len()
+            runs(controller, "two_setpoint", |experiment| experiment.sets = sets.clone()).unwrap().len()
         };
         assert_eq!(count("paper:fixed:20", ""), 1);
         assert_eq!(count("paper:random", ""), 3);
@@ -192,7 +234,7 @@ mod tests {
         assert_eq!(count("paper:fixed:20", "disturbance.plan_delay=2"), 1);
         assert_eq!(count("paper:fixed:20", "disturbance.plan_loss=0.1"), 3);
         assert_eq!((count("orca", ""), count("orca", "orca.push=0.3"), count("orca", "horizon.jitter=2")), (1, 3, 1));
-        assert_eq!(runs("orca", "two_setpoint", |plan| plan.start_jitter = 0.1).unwrap().len(), 3);
+        assert_eq!(runs("orca", "two_setpoint", |experiment| experiment.start_jitter = 0.1).unwrap().len(), 3);
     }
 
     #[test]
@@ -203,18 +245,19 @@ mod tests {
 
     #[test]
     fn a_contenders_own_settings_win() {
-        let plan = Plan {
+        let experiment = Experiment {
             entries: expand("two_setpoint").unwrap(),
-            contenders: ["safe[vodca.turn=0.1]", "safe"]
+            controllers: ["safe[vodca.turn=0.1]", "safe"]
                 .iter()
-                .flat_map(|c| c.parse::<Contenders>().unwrap().0)
+                .flat_map(|c| c.parse::<ControllerSpecs>().unwrap().0)
                 .collect(),
             seeds: vec![0],
             start_jitter: 0.0,
             sets: vec!["vodca.turn=0.2".into()],
             max_ticks: Some(7),
+            check_solver: false,
         };
-        let jobs = plan.jobs().unwrap();
+        let jobs = experiment.jobs().unwrap();
         assert_eq!((jobs[0].params.vodca.turn, jobs[1].params.vodca.turn), (0.1, 0.2));
         assert!(jobs.iter().all(|job| job.scenario.max_ticks == 7));
     }
@@ -224,9 +267,9 @@ mod tests {
         let place = tempfile::tempdir().unwrap();
         let script = place.path().join("three.csv");
         std::fs::write(&script, "0,9,9,9\n").unwrap();
-        let contender = format!("safe:script:{}", script.display());
-        let message = runs(&contender, "two_setpoint", |_| ()).unwrap_err();
-        assert!(message.starts_with(&format!("controller `{contender}` in two_setpoint:")), "{message}");
+        let controller = format!("safe:script:{}", script.display());
+        let message = runs(&controller, "two_setpoint", |_| ()).unwrap_err();
+        assert!(message.starts_with(&format!("controller `{controller}` in two_setpoint:")), "{message}");
         let message = runs("paper:policy:nowhere", "two_setpoint", |_| ()).unwrap_err();
         assert!(message.starts_with("there is no policy nowhere"), "{message}");
     }
@@ -250,9 +293,9 @@ mod tests {
         };
         std::fs::write(&file, graph.write()).unwrap();
         std::fs::write(file.with_extension("json"), Contract::standard(14, false).to_json()).unwrap();
-        let contender = format!("paper:policy:{}", file.display());
-        assert_eq!(runs(&contender, "ex14_d", |_| ()).unwrap(), [(contender.replace("paper:", ""), 0)]);
-        let message = runs(&contender, "two_setpoint", |_| ()).unwrap_err();
+        let controller = format!("paper:policy:{}", file.display());
+        assert_eq!(runs(&controller, "ex14_d", |_| ()).unwrap(), [(controller.replace("paper:", ""), 0)]);
+        let message = runs(&controller, "two_setpoint", |_| ()).unwrap_err();
         assert!(message.contains("is for 14 robots and two_setpoint has 2"), "{message}");
     }
 }

@@ -1,25 +1,31 @@
-//! Who is compared: a controller, its parameters and where its horizons come from.
+//! What is compared: a controller, its parameters and where its horizons come from.
 
+use super::best::{ORCA_BEST, orca_variants};
 use crate::range::{Numbers, NumbersError};
 use std::fmt;
 use std::str::FromStr;
 use vodca::horizon_source::{HorizonSourceError, HorizonSpec};
 use vodca::params::{Profile, UnknownProfile};
 
-/// A controller with its settings: `safe:fixed:20`, `safe[vodca.turn=0]:random`, `safe:each:10,20,random`,
-/// `paper:policy:NAME`, `orca`, `orca:5`, `orca-rh`.
+/// A controller with its settings, a row of the table: `safe:fixed:20`, `safe[vodca.turn=0]:random`,
+/// `safe:each:10,20,random`, `paper:policy:NAME`, `orca`, `orca:5`, `orca-rh`, `orca-best`.
 #[derive(Clone, Debug)]
-pub struct Contender {
+pub struct ControllerSpec {
     name: String,
+    /// As it was given, perhaps with others: `safe:fixed:10,20` for `safe:fixed:10`.
+    pub given: String,
     /// Parameters to start from.
     pub profile: Profile,
     /// What is changed in them, as for `--set`.
     pub sets: Vec<String>,
+    /// What else is changed, in one variant after the other; usually there is one that changes nothing. Only the
+    /// best variant of a layout counts there.
+    pub variants: Vec<Vec<String>>,
     /// Where horizons come from, one run for each. ORCA ignores them.
     pub horizons: Vec<HorizonPart>,
 }
 
-/// Where the horizons of a contender's run come from.
+/// Where the horizons of a controller's run come from.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum HorizonPart {
     /// A table that is known before the run; a bare `random` takes the run's seed.
@@ -28,18 +34,19 @@ pub enum HorizonPart {
     Policy(String),
 }
 
-/// One or several contenders: `safe:fixed:5,10,...,49` is one for each horizon.
+/// One or several controllers: `safe:fixed:5,10,...,49` is one for each horizon.
 #[derive(Clone, Debug)]
-pub struct Contenders(pub Vec<Contender>);
+pub struct ControllerSpecs(pub Vec<ControllerSpec>);
 
 /// Not a controller.
 #[derive(Debug, thiserror::Error)]
 #[error(
     "controller `{spec}`: {reason}; write PROFILE[KEY=VALUE,...]:HORIZON, for example safe:fixed:20, safe:random, \
-     paper:fixed:5,10,...,49 (a row for each), safe:each:10,20,30,49 (a run with each, all in one row), \
-     paper:policy:NAME, paper[vodca.rows=each]:fixed:20, orca, orca:TAU or orca-rh; without a PROFILE it is safe"
+     paper:fixed:5,10,...,49 (a row for each), paper:random:0..19 (a row for each sequence), safe:each:10,20,30,49 (a \
+     run with each, all in one row), paper:policy:NAME, paper[vodca.rows=each]:fixed:20, orca, orca:TAU, orca-rh or \
+     orca-best; without a PROFILE it is safe"
 )]
-pub struct ContenderError {
+pub struct ControllerSpecError {
     spec: String,
     reason: String,
 }
@@ -49,56 +56,74 @@ const USUAL_HORIZON: &str = "fixed:20";
 /// What a HORIZON may start with. A spec that starts so has left its PROFILE out.
 const KINDS: [&str; 5] = ["fixed", "random", "each", "policy", "script"];
 
-impl FromStr for Contenders {
-    type Err = ContenderError;
+impl FromStr for ControllerSpecs {
+    type Err = ControllerSpecError;
 
-    fn from_str(spec: &str) -> Result<Self, ContenderError> {
-        let wrong = |reason: String| ContenderError { spec: spec.into(), reason };
-        let (word, rest) = spec.split_at(spec.find(['[', ':']).unwrap_or(spec.len()));
-        if KINDS.contains(&word) {
-            return named(spec, Profile::Safe, Vec::new(), spec, horizons(spec).map_err(wrong)?);
-        }
-        let profile = word.parse().map_err(|error: UnknownProfile| wrong(error.to_string()))?;
-        let (mut sets, rest) = overlay(rest).map_err(wrong)?;
-        match (profile, rest.strip_prefix(':')) {
-            (_, None) if !rest.is_empty() => Err(wrong(format!("`{rest}` after the `]`"))),
-            (Profile::Orca | Profile::OrcaRh, Some(time_horizon)) => {
-                let _: f64 = time_horizon.parse().map_err(|_| {
-                    wrong(format!("ORCA has no prediction horizon, and `{time_horizon}` is not a time horizon in s"))
-                })?;
-                sets.push(format!("orca.time_horizon={time_horizon}"));
-                named(spec, profile, sets, USUAL_HORIZON, horizons(USUAL_HORIZON).map_err(wrong)?)
-            }
-            (_, chosen) => {
-                let chosen = chosen.unwrap_or(USUAL_HORIZON);
-                named(spec, profile, sets, chosen, horizons(chosen).map_err(wrong)?)
-            }
-        }
+    fn from_str(spec: &str) -> Result<Self, ControllerSpecError> {
+        read(spec).map_err(|reason| ControllerSpecError { spec: spec.into(), reason })
     }
 }
 
-impl Contender {
+fn read(spec: &str) -> Result<ControllerSpecs, String> {
+    let (word, rest) = spec.split_at(spec.find(['[', ':']).unwrap_or(spec.len()));
+    if KINDS.contains(&word) {
+        return rows(ControllerSpec::plain(spec, Profile::Safe), spec);
+    }
+    let (profile, variants) = match word {
+        ORCA_BEST => (Profile::Orca, orca_variants()),
+        _ => (word.parse().map_err(|error: UnknownProfile| error.to_string())?, vec![Vec::new()]),
+    };
+    let (mut sets, rest) = overlay(rest)?;
+    let tried = |set: &&String| {
+        let key = |set: &String| set.split('=').next().unwrap_or_default().trim().to_string();
+        variants.iter().flatten().any(|own| key(own) == key(set))
+    };
+    if let Some(set) = sets.iter().find(tried) {
+        return Err(format!("{word} chooses the parameter of `{set}` itself"));
+    }
+    let after = match rest.strip_prefix(':') {
+        None if !rest.is_empty() => return Err(format!("`{rest}` after the `]`")),
+        after => after,
+    };
+    let horizon = match (profile, after) {
+        (Profile::Orca | Profile::OrcaRh, Some(_)) if variants.len() > 1 => {
+            return Err(format!("{ORCA_BEST} chooses its time horizon itself"));
+        }
+        (Profile::Orca | Profile::OrcaRh, Some(time_horizon)) => {
+            let _: f64 = time_horizon.parse().map_err(|_| {
+                format!("ORCA has no prediction horizon, and `{time_horizon}` is not a time horizon in s")
+            })?;
+            sets.push(format!("orca.time_horizon={time_horizon}"));
+            USUAL_HORIZON
+        }
+        (_, after) => after.unwrap_or(USUAL_HORIZON),
+    };
+    rows(ControllerSpec { sets, variants, ..ControllerSpec::plain(spec, profile) }, horizon)
+}
+
+impl ControllerSpec {
     /// `profile` as it is, with horizons from `horizon`.
     pub fn new(name: &str, profile: Profile, horizon: HorizonPart) -> Self {
-        Self { name: name.into(), profile, sets: Vec::new(), horizons: vec![horizon] }
+        Self { horizons: vec![horizon], ..Self::plain(name, profile) }
+    }
+
+    fn plain(name: &str, profile: Profile) -> Self {
+        let name = name.to_string();
+        Self { given: name.clone(), name, profile, sets: Vec::new(), variants: vec![Vec::new()], horizons: Vec::new() }
     }
 }
 
-/// A contender for each of `rows`. One is called as it was given; several have their own HORIZON in its place.
-fn named(
-    spec: &str,
-    profile: Profile,
-    sets: Vec<String>,
-    horizon: &str,
-    rows: Vec<Vec<HorizonPart>>,
-) -> Result<Contenders, ContenderError> {
+/// `controller` with the horizons that `horizon` stands for. One row is called as it was given; several have their own
+/// HORIZON in its place.
+fn rows(controller: ControllerSpec, horizon: &str) -> Result<ControllerSpecs, String> {
+    let rows = horizons(horizon)?;
     let several = rows.len() > 1;
-    let name = |row: &[HorizonPart]| match (several, row.first()) {
-        (true, Some(own)) => format!("{}{own}", spec.strip_suffix(horizon).unwrap_or_default()),
-        _ => spec.to_string(),
+    let stem = controller.given.strip_suffix(horizon).unwrap_or_default().to_string();
+    let named = |horizons: Vec<HorizonPart>| match (several, horizons.first()) {
+        (true, Some(own)) => ControllerSpec { name: format!("{stem}{own}"), horizons, ..controller.clone() },
+        _ => ControllerSpec { horizons, ..controller.clone() },
     };
-    let contender = |horizons: Vec<_>| Contender { name: name(&horizons), profile, sets: sets.clone(), horizons };
-    Ok(Contenders(rows.into_iter().map(contender).collect()))
+    Ok(ControllerSpecs(rows.into_iter().map(named).collect()))
 }
 
 /// The settings of a leading `[KEY=VALUE,...]`, and what follows.
@@ -112,13 +137,17 @@ fn overlay(rest: &str) -> Result<(Vec<String>, &str), String> {
     }
 }
 
-/// The rows that a HORIZON stands for. A list of numbers is always a list of runs: `fixed:` gives each a row of
-/// its own, `each:` puts all into one row (and takes `random` among them).
+/// The rows that a HORIZON stands for. A list of numbers is always a list of runs: `fixed:` gives each horizon a row
+/// of its own and `random:` each seed, `each:` puts all horizons into one row (and takes `random` among them).
 fn horizons(text: &str) -> Result<Vec<Vec<HorizonPart>>, String> {
     match text.split_once(':') {
         Some(("policy", "")) => Err("`policy` needs a name, a folder or an ONNX file".into()),
         Some(("policy", name)) => Ok(vec![vec![HorizonPart::Policy(name.into())]]),
         Some(("fixed", list)) => Ok(fixed(list)?.into_iter().map(|one| vec![one]).collect()),
+        Some(("random", list)) => {
+            let Numbers(seeds) = list.parse().map_err(|error: NumbersError| error.to_string())?;
+            Ok(seeds.into_iter().map(|seed| vec![HorizonPart::Table(HorizonSpec::Random(Some(seed)))]).collect())
+        }
         Some(("each", list)) => {
             let (random, numbers): (Vec<&str>, Vec<&str>) = list.split(',').partition(|item| *item == "random");
             let mut row = if numbers.is_empty() { Vec::new() } else { fixed(&numbers.join(","))? };
@@ -148,7 +177,7 @@ impl fmt::Display for HorizonPart {
     }
 }
 
-impl fmt::Display for Contender {
+impl fmt::Display for ControllerSpec {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(&self.name)
     }
@@ -159,27 +188,27 @@ mod tests {
     use super::*;
     use vodca::params::{ControllerKind, Params};
 
-    fn all(spec: &str) -> Vec<Contender> {
-        spec.parse::<Contenders>().unwrap().0
+    fn all(spec: &str) -> Vec<ControllerSpec> {
+        spec.parse::<ControllerSpecs>().unwrap().0
     }
 
     fn params(spec: &str) -> Params {
-        let contender = all(spec).remove(0);
-        Params::resolve(contender.profile, "-", &toml::Table::new(), &contender.sets).unwrap()
+        let controller = all(spec).remove(0);
+        Params::resolve(controller.profile, "-", &toml::Table::new(), &controller.sets).unwrap()
     }
 
-    /// The horizons of the only contender.
+    /// The horizons of the only controller.
     fn horizons(spec: &str) -> Vec<String> {
-        let [only] = <[Contender; 1]>::try_from(all(spec)).unwrap();
+        let [only] = <[ControllerSpec; 1]>::try_from(all(spec)).unwrap();
         assert_eq!(only.to_string(), spec);
         only.horizons.iter().map(HorizonPart::to_string).collect()
     }
 
-    /// All contenders by name.
+    /// All controllers by name.
     fn names(spec: &str) -> Vec<String> {
-        let names = |contender: &Contender| {
-            assert_eq!(contender.horizons.len(), 1);
-            contender.to_string()
+        let names = |controller: &ControllerSpec| {
+            assert_eq!(controller.horizons.len(), 1);
+            controller.to_string()
         };
         all(spec).iter().map(names).collect()
     }
@@ -213,7 +242,16 @@ mod tests {
         assert_eq!(names("safe:fixed:10,20"), ["safe:fixed:10", "safe:fixed:20"]);
         assert_eq!(names("paper[vodca.rows=each]:fixed:5,6,...,8")[3], "paper[vodca.rows=each]:fixed:8");
         assert_eq!(names("fixed:5,10,...,49").len(), 10);
+        assert_eq!(names("paper:random:0..2"), ["paper:random:0", "paper:random:1", "paper:random:2"]);
+        assert!(all("paper:fixed:10,20").iter().all(|one| one.given == "paper:fixed:10,20"));
         assert_eq!((names("safe"), names("fixed:20")), (vec!["safe".into()], vec!["fixed:20".to_string()]));
+    }
+
+    #[test]
+    fn the_best_orca_is_one_controller_with_variants() {
+        let [best] = <[ControllerSpec; 1]>::try_from(all("orca-best[orca.fade=2]")).unwrap();
+        assert_eq!((best.to_string().as_str(), best.variants.len()), ("orca-best[orca.fade=2]", 16));
+        assert_eq!((best.sets, all("orca")[0].variants.len()), (vec!["orca.fade=2".to_string()], 1));
     }
 
     #[test]
@@ -236,10 +274,13 @@ mod tests {
             ("safe[vodca.turn=0]random", "`random` after the `]`"),
             ("paper:policy:", "`policy` needs a name"),
             ("fixed:5,10,...,50", "horizon 50 is outside 1..=49"),
+            ("orca-best[orca.push=0.1]", "chooses the parameter of `orca.push=0.1` itself"),
+            ("orca-best:5", "orca-best chooses its time horizon itself"),
+            ("paper:random:x", "is not a list of whole numbers"),
             ("fixed:", "is not a list of whole numbers"),
         ];
         for (spec, reason) in cases {
-            let message = spec.parse::<Contenders>().unwrap_err().to_string();
+            let message = spec.parse::<ControllerSpecs>().unwrap_err().to_string();
             assert!(message.contains(reason) && message.contains("safe:each:10,20,30,49"), "{message}");
         }
     }
