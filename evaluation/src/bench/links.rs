@@ -46,9 +46,14 @@ impl LinkKind {
         (Self::IceoryxEvent, "iceoryx2, event"),
     ];
 
-    /// The floor it is compared with: the same way of waiting without a middleware.
+    /// The floor it is compared with: the same way of waiting, spinning or sleeping, without a middleware.
     pub(super) fn floor(self) -> LinkKind {
         if matches!(self, Self::PageSpin | Self::IceoryxBusy) { Self::PageSpin } else { Self::Futex }
+    }
+
+    /// Its name in tables.
+    pub(super) fn name(self) -> &'static str {
+        Self::ALL.iter().find(|(kind, _)| *kind == self).map_or("", |(_, name)| name)
     }
 }
 
@@ -289,6 +294,9 @@ impl Link for TeamFirst {
     fn receive(&mut self) -> Result<Message, BenchError> {
         let start = Instant::now();
         while start.elapsed() < PATIENCE {
+            // As the coordinator does: without the look every report so far would end the wait at once, and
+            // this end would spin.
+            self.from.look();
             if let Some(report) = self.from.receive()? {
                 return Ok(message_of(&report.plan));
             }
