@@ -66,7 +66,10 @@ fn at(curve: Curve, robots: usize) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::stored::StoredTable;
+    use super::super::{Options, Part, estimate};
     use super::*;
+    use std::path::Path;
 
     #[test]
     fn a_curve_meets_what_was_measured_and_grows_between() {
@@ -76,5 +79,37 @@ mod tests {
         let between: Vec<f64> = (2..=200).map(|robots| at(RELAY_NO_QP, robots)).collect();
         assert!(between.is_sorted(), "{between:?}");
         assert!(at(PEER_NO_QP, 200) > at(PEER_NO_QP, 100) && at(FLOOR, 1) > 0.0);
+    }
+
+    /// The benchmark that is kept, as `machine.toml` and its files describe it.
+    fn kept() -> (toml::Table, StoredTable) {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../results/latency");
+        let text = std::fs::read_to_string(folder.join("machine.toml")).expect("a kept benchmark");
+        (toml::from_str(&text).expect("TOML"), StoredTable::rows(&folder).expect("its rows"))
+    }
+
+    #[test]
+    fn the_benchmark_that_is_kept_took_about_as_long_as_these_costs_say() {
+        let (machine, _) = kept();
+        let word = |key: &str| machine.get(key).and_then(toml::Value::as_str).unwrap_or_default();
+        let took = machine.get("seconds").and_then(toml::Value::as_integer).expect("seconds") as f64;
+        let library = word("command").contains("--onnxruntime").then(|| "onnxruntime".into());
+        let expected = estimate(&Options { onnxruntime: library, ..Options::whole(Part::All) }).as_secs_f64();
+        // A busy machine may take any time longer.
+        let most = if word("machine") == "quiet" { 1.4 } else { f64::INFINITY };
+        assert_eq!(word("part"), "all");
+        assert!((0.6..most).contains(&(took / expected)), "took {took} s instead of {expected} s");
+    }
+
+    #[test]
+    fn every_row_of_the_benchmark_that_is_kept_has_the_samples_it_needs() {
+        let (_, rows) = kept();
+        for row in rows.lines() {
+            let what = row.cell("what").unwrap_or_default();
+            let real_time = row.cell("part") == Some("scale");
+            let enough = if real_time { 1_000.0 } else { 20_000.0 };
+            assert!(row.number("count").is_some_and(|count| count >= enough), "{what}");
+            assert!(row.number("p99_us").is_some() && row.number("p999_us").is_none() == real_time, "{what}");
+        }
     }
 }

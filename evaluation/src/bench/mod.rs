@@ -11,6 +11,7 @@ mod dump;
 mod exchange;
 mod floor;
 mod hop;
+mod iceoryx_links;
 mod links;
 mod load;
 mod machine;
@@ -256,4 +257,37 @@ pub fn write(results: &Results, folder: &coordinator::record::RunFolder, options
         folder.write(&name, svg.as_bytes())?;
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::cell::Cell;
+
+    #[derive(Default)]
+    struct Sum(Cell<f64>);
+
+    impl Watch for Sum {
+        fn part(&self, _: &'static str) {}
+
+        fn done(&self, seconds: f64) {
+            self.0.set(self.0.get() + seconds);
+        }
+    }
+
+    #[test]
+    fn what_is_told_to_be_done_adds_up_to_the_estimate() {
+        for part in [Part::Solver, Part::Step] {
+            let (options, sum) = (Options { quick: true, ..Options::whole(part) }, Sum::default());
+            measure(&options, LoadAverage::default(), &StopFlag::default(), &sum).unwrap();
+            let share = sum.0.get() / estimate(&options).as_secs_f64();
+            assert!((share - 1.0).abs() < 0.01, "{part:?}: {share}");
+        }
+    }
+
+    #[test]
+    fn the_whole_benchmark_takes_about_twenty_minutes() {
+        let minutes = estimate(&Options::whole(Part::All)).as_secs_f64() / 60.0;
+        assert!((10.0..22.0).contains(&minutes), "{minutes}");
+    }
 }
