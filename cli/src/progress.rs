@@ -2,13 +2,15 @@
 
 use evaluation::bench::Watch;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use std::cell::RefCell;
+use std::cell::Cell;
 use std::io::IsTerminal;
+use std::time::Duration;
 
 /// A line on standard error that is redrawn in place.
 pub struct Progress(ProgressBar);
 
 const STEPS: &str = "{bar:30} {pos}/{len} {msg}  {elapsed} (left {eta})";
+const PARTS: &str = "{bar:30} {percent}% {msg}  {elapsed} (left {eta})";
 const TICKS: &str = "tick {pos} of at most {len}  {msg}";
 
 impl Progress {
@@ -66,36 +68,37 @@ impl Progress {
     }
 }
 
-/// Shows the parts of a benchmark one after the other.
-pub struct Parts(RefCell<Progress>);
+/// How far a benchmark is: its parts, and what is left by what they were expected to take.
+pub struct Parts {
+    progress: Progress,
+    /// Done so far, s.
+    done: Cell<f64>,
+}
 
 impl Parts {
-    /// Nothing to show yet.
-    pub fn new() -> Self {
-        Self(RefCell::new(Progress::hidden()))
+    /// Of a benchmark that is expected to take so long.
+    pub fn expected(whole: Duration) -> Self {
+        Self { progress: Progress::new(milliseconds(whole.as_secs_f64()), PARTS), done: Cell::new(0.0) }
     }
 
     /// Takes the line away.
     pub fn finish(&self) {
-        self.0.borrow().finish();
+        self.progress.finish();
     }
 }
 
-impl Default for Parts {
-    fn default() -> Self {
-        Self::new()
-    }
+/// The unit of the bar.
+fn milliseconds(seconds: f64) -> u64 {
+    (1e3 * seconds).round() as u64
 }
 
 impl Watch for Parts {
-    fn part(&self, name: &'static str, steps: usize) {
-        self.finish();
-        let progress = Progress::of_work(steps);
-        progress.say(name);
-        self.0.replace(progress);
+    fn part(&self, name: &'static str) {
+        self.progress.say(name);
     }
 
-    fn step(&self) {
-        self.0.borrow().advance();
+    fn done(&self, seconds: f64) {
+        self.done.set(self.done.get() + seconds);
+        self.progress.0.set_position(milliseconds(self.done.get()));
     }
 }

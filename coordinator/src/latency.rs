@@ -97,6 +97,8 @@ impl Default for Latency {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::collection::vec;
+    use proptest::prelude::*;
 
     #[test]
     fn percentiles_are_within_a_thousandth() {
@@ -129,5 +131,31 @@ mod tests {
         assert_eq!(latency.percentiles(), Percentiles::default());
         latency.record(Duration::from_secs(3600));
         assert!((latency.percentiles().max_us / 60e6 - 1.0).abs() < 2e-3);
+    }
+
+    proptest! {
+        #[test]
+        fn percentiles_are_those_of_the_sorted_durations(mut durations in vec(1u64..100_000_000, 1..3_000)) {
+            let mut latency = Latency::new();
+            durations.iter().for_each(|duration| latency.record_ns(*duration));
+            durations.sort_unstable();
+            let figures = latency.percentiles();
+            // The smallest duration that at least this share of all is no longer than.
+            let sorted = |share: f64| {
+                let rank = (share * durations.len() as f64).ceil() as usize;
+                durations[rank.clamp(1, durations.len()) - 1] as f64 / 1e3
+            };
+            let pairs = [
+                (figures.p50_us, sorted(0.5)),
+                (figures.p90_us, sorted(0.9)),
+                (figures.p99_us, sorted(0.99)),
+                (figures.p999_us, sorted(0.999)),
+                (figures.max_us, sorted(1.0)),
+            ];
+            prop_assert_eq!(figures.count, durations.len() as u64);
+            for (found, exact) in pairs {
+                prop_assert!((found / exact - 1.0).abs() <= 1e-3, "{} instead of {}", found, exact);
+            }
+        }
     }
 }

@@ -2,13 +2,15 @@
 
 use crate::exit::{Ending, Failure, Outcome};
 use crate::progress::Parts;
-use crate::stdout;
+use crate::stdout::{self, PrintError};
 use coordinator::record::RunFolder;
 use evaluation::bench::row::TICK_PARTS;
-use evaluation::bench::{self, Earlier, Options, Part};
+use evaluation::bench::{self, Earlier, LoadAverage, Options, Part, Results};
 use shared::messages::MAX_ROBOTS;
 use shared::stop::StopFlag;
-use std::path::PathBuf;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 /// Arguments of `bench`.
 #[derive(Debug, clap::Args)]
@@ -19,8 +21,12 @@ Examples:
   ./run.sh bench exchange --compare before
   ./run.sh bench exchange --robots 14,50
   ./run.sh bench all --onnxruntime /usr/lib/libonnxruntime.so
-Writes rows.csv, figures.csv, histograms.csv, machine.toml and plots (SVG). Read ratios first, and let nothing
-else run meanwhile: digits belong to the machine. `all` takes a quarter of an hour.")]
+  ./run.sh bench all --tables-only --out results/latency
+  ./run.sh bench --markdown results/latency
+Writes rows.csv, figures.csv, machine.toml, histograms.csv and plots (SVG). Every row rests on at least 20,000
+samples, at the pace of real time on 1,000; a percentile with fewer than ten samples beyond it is `-`. Read ratios
+first, and let nothing else run meanwhile: digits belong to the machine, and one whose load is above 0.5 before it
+begins is called busy. `all` takes about twenty minutes.")]
 pub struct Args {
     /// What to measure
     #[arg(default_value = "all")]
@@ -43,6 +49,12 @@ pub struct Args {
     /// ONNX Runtime library (1.24 or later) to measure beside the embedded back-end
     #[arg(long, value_name = "FILE")]
     onnxruntime: Option<PathBuf>,
+    /// Write neither histograms nor plots: what is small enough to keep
+    #[arg(long)]
+    tables_only: bool,
+    /// Measure nothing: print the tables of an earlier benchmark as Markdown
+    #[arg(long, value_name = "DIR", exclusive = true)]
+    markdown: Option<PathBuf>,
 }
 
 fn size_of_team(text: &str) -> Result<usize, String> {
@@ -52,6 +64,10 @@ fn size_of_team(text: &str) -> Result<usize, String> {
 
 /// Measures, writes and prints.
 pub fn run(args: Args) -> Ending {
+    if let Some(folder) = &args.markdown {
+        return print_markdown(folder);
+    }
+    let load = LoadAverage::now();
     let stop = StopFlag::install().map_err(Failure::broken)?;
     let earlier = match &args.compare {
         Some(folder) => Earlier::read(folder).map_err(Failure::usage)?,
@@ -65,26 +81,62 @@ pub fn run(args: Args) -> Ending {
         robots: args.robots,
         dump: args.dump,
         onnxruntime: args.onnxruntime,
+        tables_only: args.tables_only,
     };
+    let expected = bench::estimate(&options);
+    if !options.quick {
+        announce(expected, &load);
+    }
     let results = {
-        let parts = Parts::new();
-        let measured = bench::measure(&options, &stop, &parts);
+        let parts = Parts::expected(expected);
+        let measured = bench::measure(&options, load, &stop, &parts);
         parts.finish();
         measured.map_err(Failure::broken)?
     };
     // Whatever becomes of the terminal, the results are kept.
     bench::write(&results, &folder, &options).map_err(Failure::broken)?;
+    print(&results, &earlier)?;
+    stdout::line(folder.path().display())?;
+    Ok(Outcome::Done)
+}
+
+/// Says how long it will take, and what to expect of a busy machine, before anything is measured.
+fn announce(expected: Duration, load: &LoadAverage) {
+    let seconds = expected.as_secs();
+    let time = if seconds < 100 { format!("{seconds} s") } else { format!("{} minutes", (seconds + 30) / 60) };
+    let mut stderr = std::io::stderr();
+    // That nobody reads it is no reason not to measure.
+    let _ = writeln!(stderr, "takes about {time} on two quiet cores");
+    if load.is_busy() {
+        let _ = writeln!(stderr, "the load is {} already: the tables will call this machine busy", load.text());
+    }
+}
+
+fn print(results: &Results, earlier: &Earlier) -> Result<(), PrintError> {
+    let machine = format!(
+        "{} machine: load {} before, {} after",
+        results.load_before.verdict(),
+        results.load_before.text(),
+        results.load_after.text()
+    );
+    stdout::line(&machine)?;
     for part in results.parts() {
-        stdout::line(format_args!("{part}"))?;
+        stdout::line(format_args!("{part} ({} machine)", results.load_before.verdict()))?;
         if part == TICK_PARTS {
             stdout::line(results.tick_parts_table().aligned())?;
             continue;
         }
-        stdout::line(results.compared_table(part, &earlier).aligned())?;
+        stdout::line(results.part_table(part, earlier).aligned())?;
     }
     if !results.figures.is_empty() {
         stdout::line(results.figures_table().aligned())?;
     }
-    stdout::line(folder.path().display())?;
+    Ok(())
+}
+
+fn print_markdown(folder: &Path) -> Ending {
+    for section in bench::sections(folder).map_err(Failure::usage)? {
+        stdout::line(format_args!("### {}\n\n{}\n\n{}", section.name, section.caption, section.table))?;
+    }
     Ok(Outcome::Done)
 }

@@ -1,45 +1,20 @@
 //! An earlier run beside this one.
 
+use super::stored::{StoredError, StoredTable};
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-/// p50 of the rows of an earlier run, us.
+/// p50 of the rows of an earlier run, us, by part, name and size.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Earlier(BTreeMap<String, f64>);
-
-/// An earlier run cannot be read.
-#[derive(Debug, thiserror::Error)]
-pub enum CompareError {
-    /// The file.
-    #[error("cannot read {}: {source}; give the folder that an earlier `bench` wrote", path.display())]
-    Unreadable {
-        /// Its path.
-        path: PathBuf,
-        /// What the system said.
-        source: std::io::Error,
-    },
-    /// Not such a file.
-    #[error("{} has no rows of a benchmark; it should start with part,what,n,count,p50_us", path.display())]
-    Malformed {
-        /// Its path.
-        path: PathBuf,
-    },
-}
+pub struct Earlier(BTreeMap<(String, String, String), f64>);
 
 impl Earlier {
     /// Reads `rows.csv` in `folder`.
-    pub fn read(folder: &Path) -> Result<Self, CompareError> {
-        let path = folder.join("rows.csv");
-        let text =
-            std::fs::read_to_string(&path).map_err(|source| CompareError::Unreadable { path: path.clone(), source })?;
-        let mut lines = text.lines();
-        if !lines.next().is_some_and(|header| header.starts_with("part,what,n,count,p50_us,")) {
-            return Err(CompareError::Malformed { path });
-        }
-        let rows = lines.filter_map(|line| {
-            let cells = cells(line);
-            let p50 = cells.get(4)?.parse().ok().filter(|p50| *p50 > 0.0)?;
-            Some((key(cells.first()?, cells.get(1)?, cells.get(2)?), p50))
+    pub fn read(folder: &Path) -> Result<Self, StoredError> {
+        let table = StoredTable::rows(folder)?;
+        let rows = table.lines().filter_map(|line| {
+            let p50 = line.number("p50_us").filter(|p50| *p50 > 0.0)?;
+            Some((key(line.cell("part")?, line.cell("what")?, line.cell("n").unwrap_or_default()), p50))
         });
         Ok(Self(rows.collect()))
     }
@@ -55,25 +30,8 @@ impl Earlier {
     }
 }
 
-fn key(part: &str, name: &str, size: &str) -> String {
-    format!("{part}\n{name}\n{size}")
-}
-
-/// The cells of a line; commas between quotes belong to a cell.
-fn cells(line: &str) -> Vec<String> {
-    let (mut cells, mut quoted) = (vec![String::new()], false);
-    for character in line.chars() {
-        match character {
-            '"' => quoted = !quoted,
-            ',' if !quoted => cells.push(String::new()),
-            other => {
-                if let Some(cell) = cells.last_mut() {
-                    cell.push(other);
-                }
-            }
-        }
-    }
-    cells
+fn key(part: &str, name: &str, size: &str) -> (String, String, String) {
+    (part.into(), name.into(), size.into())
 }
 
 #[cfg(test)]
@@ -90,20 +48,20 @@ mod tests {
         let mut results = Results::default();
         results.row(Row::new("hop", "a, busy", None, latency.clone()));
         results.row(Row::new("exchange", "peer", Some(14), latency));
-        std::fs::write(place.path().join("rows.csv"), results.rows_table(None).csv()).unwrap();
+        std::fs::write(place.path().join("rows.csv"), results.rows_table().csv()).unwrap();
         let earlier = Earlier::read(place.path()).unwrap();
         assert_eq!(earlier.p50("hop", "a, busy", None), Some(5.0));
         assert_eq!(earlier.p50("exchange", "peer", Some(14)), Some(5.0));
         assert_eq!(earlier.p50("exchange", "peer", Some(15)), None);
-        let table = results.compared_table("hop", &earlier).csv();
+        let table = results.part_table("hop", &earlier).csv();
         assert!(table.lines().nth(1).unwrap().ends_with(",1.00"), "{table}");
     }
 
     #[test]
-    fn what_is_no_earlier_run_is_refused() {
+    fn runs_of_earlier_versions_can_be_read() {
         let place = tempfile::tempdir().unwrap();
-        assert!(Earlier::read(place.path()).unwrap_err().to_string().contains("rows.csv"));
-        std::fs::write(place.path().join("rows.csv"), "scenario,success\n").unwrap();
-        assert!(Earlier::read(place.path()).unwrap_err().to_string().contains("no rows"));
+        let text = "part,what,n,count,p50_us,p90_us,p99_us,p999_us,max_us,floor_us,ratio\nhop,futex,,40,31.5,,,,,,\n";
+        std::fs::write(place.path().join("rows.csv"), text).unwrap();
+        assert_eq!(Earlier::read(place.path()).unwrap().p50("hop", "futex", None), Some(31.5));
     }
 }

@@ -47,20 +47,10 @@ impl FloorTeam {
         Ok(Self { page, members: partners, tick: 0, _place: place })
     }
 
-    /// Runs `ticks` ticks, one every `period` or as fast as they go.
-    pub(super) fn run(
-        &mut self,
-        ticks: u64,
-        period: Option<Duration>,
-        latency: &mut Latency,
-    ) -> Result<(), BenchError> {
+    /// Runs `ticks` ticks as fast as they go.
+    pub(super) fn run(&mut self, ticks: u64, latency: &mut Latency) -> Result<(), BenchError> {
         let all = |answered| answered as usize == self.members.len();
-        let mut due = Instant::now();
         for _ in 0..ticks {
-            if let Some(period) = period {
-                std::thread::sleep(due.saturating_duration_since(Instant::now()));
-                due += period;
-            }
             let start = Instant::now();
             self.tick += 1;
             self.page.word(ANSWERED).store(0, Ordering::Relaxed);

@@ -3,31 +3,46 @@
 use super::links::{End, Link, LinkKind, Message, link};
 use super::partner::{Partner, PartnerArgs};
 use super::row::{Results, Row};
-use super::{BenchError, Extent};
+use super::{BenchError, Extent, Options, cost};
 use coordinator::latency::Latency;
 use shared::os;
 use shared::place::Place;
 
-/// Passes over all links: what disturbs one for a while shall not spoil one link alone.
-const PASSES: usize = 4;
+/// Passes over all links, so that what disturbs one for a while does not spoil one link alone.
+const PASSES: usize = 20;
+/// Rounds of a link in a pass; every round is two samples.
+const ROUNDS: u64 = 1_000;
+
+/// What a pass of a link is expected to take, s.
+fn pass_seconds(options: &Options, kind: LinkKind) -> f64 {
+    let round = if kind.floor() == LinkKind::PageSpin { cost::SPINNING_ROUND } else { cost::SLEEPING_ROUND };
+    cost::LINK + 1.1 * options.pick(ROUNDS, 20) as f64 * round
+}
+
+/// What this part is expected to take, s.
+pub(super) fn seconds(options: &Options) -> f64 {
+    let pass: f64 = LinkKind::ALL.iter().map(|(kind, _)| pass_seconds(options, *kind)).sum();
+    options.pick(PASSES, 2) as f64 * pass
+}
 
 /// Measures every link.
 pub(super) fn run(extent: &Extent<'_>, results: &mut Results) -> Result<(), BenchError> {
-    let rounds = extent.pick(5_000, 20);
+    extent.tell("hop");
+    let rounds = extent.options.pick(ROUNDS, 20);
     let mut found: Vec<Latency> = LinkKind::ALL.iter().map(|_| Latency::new()).collect();
-    extent.tell("hop", PASSES * LinkKind::ALL.len());
-    for _ in 0..PASSES {
+    for _ in 0..extent.options.pick(PASSES, 2) {
         for ((kind, _), latency) in LinkKind::ALL.into_iter().zip(&mut found) {
             measure(kind, rounds, latency)?;
-            extent.advance()?;
+            extent.advance(pass_seconds(extent.options, kind))?;
         }
     }
-    let p50 = |kind| {
-        let at = LinkKind::ALL.iter().position(|(other, _)| *other == kind);
-        at.map(|at| found[at].percentiles().p50_us)
-    };
     for ((kind, name), latency) in LinkKind::ALL.into_iter().zip(&found) {
-        results.row(Row::new("hop", name, None, latency.clone()).over(p50(kind.floor())));
+        let row = Row::new("hop", name, None, latency.clone());
+        let floor = LinkKind::ALL.iter().position(|(other, _)| *other == kind.floor());
+        results.row(match floor {
+            Some(floor) => row.over(kind.floor().name(), &found[floor]),
+            None => row,
+        });
     }
     Ok(())
 }

@@ -1,12 +1,10 @@
 //! The ways by which a message of the size of a plan gets from one process to another.
 
+use super::iceoryx_links::{Busy, EventFirst, EventSecond, TeamFirst, TeamSecond};
 use super::{BenchError, failed};
-use shared::messages::{Announcement, MAX_ROBOTS, Observation, Plan, PolicyAnswer, Report, kind, order};
 use shared::place::Place;
 use shared::raw::{EventFd, PLAN_WORDS, SharedPage, futex_wake, wait_until};
-use shared::services::{
-    Announcements, Announcer, PolicyAsker, PolicyPort, Receiver, Reporter, Reports, Sender, Services,
-};
+use shared::services::{PolicyAsker, PolicyPort, Services};
 use std::os::unix::net::UnixDatagram;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -46,9 +44,14 @@ impl LinkKind {
         (Self::IceoryxEvent, "iceoryx2, event"),
     ];
 
-    /// The floor it is compared with: the same way of waiting without a middleware.
+    /// The floor it is compared with: the same way of waiting, spinning or sleeping, without a middleware.
     pub(super) fn floor(self) -> LinkKind {
         if matches!(self, Self::PageSpin | Self::IceoryxBusy) { Self::PageSpin } else { Self::Futex }
+    }
+
+    /// Its name in tables.
+    pub(super) fn name(self) -> &'static str {
+        Self::ALL.iter().find(|(kind, _)| *kind == self).map_or("", |(_, name)| name)
     }
 }
 
@@ -109,7 +112,7 @@ pub(super) fn link(kind: LinkKind, place: &Place, end: End) -> Result<(Box<dyn L
         LinkKind::IceoryxBusy => {
             let services = services(place, end)?;
             let ports = services.plans()?.ok_or(BenchError::Silent { who: "the service of plans" })?;
-            Box::new(Busy { ports, me: me as u32, _services: services })
+            Box::new(Busy::new(ports, me as u32, services))
         }
         LinkKind::IceoryxEvent => match end {
             End::First => Box::new(EventFirst(PolicyAsker::create(place)?)),
@@ -120,9 +123,9 @@ pub(super) fn link(kind: LinkKind, place: &Place, end: End) -> Result<(Box<dyn L
             match end {
                 End::First => {
                     let (to, from) = (services.announcer(0)?, services.reports()?);
-                    Box::new(TeamFirst { to, from, _services: services })
+                    Box::new(TeamFirst::new(to, from, services))
                 }
-                End::Second(_) => Box::new(TeamSecond { to: services.reporter()?, from: services.announcements()? }),
+                End::Second(_) => Box::new(TeamSecond::new(services.reporter()?, services.announcements()?)),
             }
         }
     };
@@ -195,7 +198,7 @@ impl Link for Paged {
 }
 
 /// Looks without pause until there is something, for [`PATIENCE`] at most.
-fn spin_until<T>(mut look: impl FnMut() -> Option<T>) -> Option<T> {
+pub(super) fn spin_until<T>(mut look: impl FnMut() -> Option<T>) -> Option<T> {
     let start = Instant::now();
     for turn in 1u64.. {
         if let Some(found) = look() {
@@ -239,128 +242,5 @@ impl Link for Datagram {
         received.map_err(failed("receive a datagram"))?;
         let word = |index: usize| bytes.as_chunks::<8>().0.get(index).map_or(0, |bytes| u64::from_le_bytes(*bytes));
         Ok(Message { stamp: word(0), one_way: word(1), last: word(2) })
-    }
-}
-
-/// A message in a plan, and back.
-fn plan_of(message: Message, me: u32) -> Plan {
-    Plan { stamp: message.stamp, tick: message.one_way, epoch: message.last, robot: me, ..Plan::EMPTY }
-}
-
-fn message_of(plan: &Plan) -> Message {
-    Message { stamp: plan.stamp, one_way: plan.tick, last: plan.epoch }
-}
-
-struct Busy {
-    ports: (Sender<Plan>, Receiver<Plan>),
-    me: u32,
-    _services: Services,
-}
-
-impl Link for Busy {
-    fn send(&mut self, message: Message) -> Result<(), BenchError> {
-        Ok(self.ports.0.send(plan_of(message, self.me))?)
-    }
-
-    fn receive(&mut self) -> Result<Message, BenchError> {
-        let (receiver, me) = (&self.ports.1, self.me);
-        // Who publishes hears himself as well.
-        let look = || match receiver.receive() {
-            Ok(Some(plan)) if plan.robot != me => Some(Ok(message_of(&plan))),
-            Ok(_) => None,
-            Err(error) => Some(Err(error)),
-        };
-        Ok(spin_until(look).ok_or(BenchError::Silent { who: "the other end of a link" })??)
-    }
-}
-
-struct TeamFirst {
-    to: Announcer,
-    from: Reports,
-    _services: Services,
-}
-
-impl Link for TeamFirst {
-    fn send(&mut self, message: Message) -> Result<(), BenchError> {
-        let announcement = Announcement { order: order::TICK, plans: 1, ..Default::default() };
-        Ok(self.to.announce(&announcement, &[plan_of(message, 0)])?)
-    }
-
-    fn receive(&mut self) -> Result<Message, BenchError> {
-        let start = Instant::now();
-        while start.elapsed() < PATIENCE {
-            if let Some(report) = self.from.receive()? {
-                return Ok(message_of(&report.plan));
-            }
-            self.from.wait(1, PATIENCE);
-        }
-        Err(BenchError::Silent { who: "the other end of a link" })
-    }
-}
-
-struct TeamSecond {
-    to: Reporter,
-    from: Announcements,
-}
-
-impl Link for TeamSecond {
-    fn send(&mut self, message: Message) -> Result<(), BenchError> {
-        Ok(self.to.report(Report {
-            plan: plan_of(message, 1),
-            ..Report::presence(0, 1, kind::STEP, vodca::Position::zeros())
-        })?)
-    }
-
-    fn receive(&mut self) -> Result<Message, BenchError> {
-        let start = Instant::now();
-        while start.elapsed() < PATIENCE {
-            let received = self.from.receive(|_, plans| plans.first().map(message_of).unwrap_or_default())?;
-            if let Some(message) = received {
-                return Ok(message);
-            }
-            self.from.wait(PATIENCE);
-        }
-        Err(BenchError::Silent { who: "the other end of a link" })
-    }
-}
-
-struct EventFirst(PolicyAsker);
-
-impl Link for EventFirst {
-    fn send(&mut self, message: Message) -> Result<(), BenchError> {
-        let Message { stamp, one_way, last } = message;
-        let positions = [[0.0; 2]; MAX_ROBOTS];
-        Ok(self.0.ask(Observation { epoch: last, tick: one_way, stamp, robots: 0, positions })?)
-    }
-
-    fn receive(&mut self) -> Result<Message, BenchError> {
-        let start = Instant::now();
-        while start.elapsed() < PATIENCE {
-            if let Some(PolicyAnswer { stamp, tick, epoch, .. }) = self.0.receive()? {
-                return Ok(Message { stamp, one_way: tick, last: epoch });
-            }
-            self.0.wait(PATIENCE)?;
-        }
-        Err(BenchError::Silent { who: "the other end of a link" })
-    }
-}
-
-struct EventSecond(PolicyPort);
-
-impl Link for EventSecond {
-    fn send(&mut self, message: Message) -> Result<(), BenchError> {
-        let Message { stamp, one_way, last } = message;
-        Ok(self.0.answer(PolicyAnswer { epoch: last, tick: one_way, stamp, ..PolicyAnswer::EMPTY })?)
-    }
-
-    fn receive(&mut self) -> Result<Message, BenchError> {
-        let start = Instant::now();
-        while start.elapsed() < PATIENCE {
-            if let Some(Observation { stamp, tick, epoch, .. }) = self.0.newest()? {
-                return Ok(Message { stamp, one_way: tick, last: epoch });
-            }
-            self.0.wait(PATIENCE)?;
-        }
-        Err(BenchError::Silent { who: "the other end of a link" })
     }
 }

@@ -1,6 +1,7 @@
 //! The machine and what ran on it: `machine.toml`.
 
-use super::Options;
+use super::row::Results;
+use super::{Options, estimate};
 use serde::Serialize;
 use std::fs;
 use std::process::Command;
@@ -19,13 +20,20 @@ struct Machine {
     governor: String,
     memory_kib: u64,
     kernel: String,
-    /// Means over 1, 5 and 15 minutes, when the benchmark had ended: its own processes are in them.
-    load: String,
+    /// `busy`: so much else ran before the benchmark began that its figures are not those of the machine alone.
+    machine: &'static str,
+    /// Means over 1, 5 and 15 minutes, before the benchmark began.
+    load_before: String,
+    /// And when it had ended: its own processes are in them.
+    load_after: String,
     seconds_since_boot: u64,
+    /// How long the benchmark was expected to take, and how long it took.
+    seconds_expected: u64,
+    seconds: u64,
 }
 
 /// Its text. What cannot be found out is `unknown`.
-pub(super) fn describe(options: &Options) -> String {
+pub(super) fn describe(options: &Options, results: &Results) -> String {
     let read = |path: &str| fs::read_to_string(path).map(|text| text.trim().to_owned());
     let field = |path: &str, name: &str| {
         let text = read(path).ok()?;
@@ -49,8 +57,12 @@ pub(super) fn describe(options: &Options) -> String {
         governor: read("/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor").unwrap_or_else(|_| unknown()),
         memory_kib: memory.unwrap_or(0),
         kernel: read("/proc/sys/kernel/osrelease").unwrap_or_else(|_| unknown()),
-        load: read("/proc/loadavg").unwrap_or_else(|_| unknown()),
+        machine: results.load_before.verdict(),
+        load_before: results.load_before.text().to_owned(),
+        load_after: results.load_after.text().to_owned(),
         seconds_since_boot: uptime.unwrap_or(0),
+        seconds_expected: estimate(options).as_secs_f64().round() as u64,
+        seconds: results.seconds.round() as u64,
     };
     toml::to_string(&machine).unwrap_or_else(|error| format!("# cannot be told: {error}\n"))
 }

@@ -1,28 +1,40 @@
 //! Benchmarks that can be trusted: every figure beside its floor or its peer, measured by one command.
 //!
-//! Parts that compare processes run interleaved, so that whatever else the machine does falls on both
-//! sides. Read ratios first: digits belong to the machine that `machine.toml` describes.
+//! Every distribution rests on at least 20,000 samples (1,000 at the pace of real time), and a percentile is
+//! told only where at least ten samples lie beyond it. What is compared is measured in turns, so that whatever
+//! else the machine does falls on both sides, and waits in the same way: who spins is compared with who spins,
+//! who sleeps with who sleeps. Read ratios first: digits belong to the machine that `machine.toml` describes.
 
 mod compare;
+mod cost;
 mod dump;
 mod exchange;
 mod floor;
 mod hop;
+mod iceoryx_links;
 mod links;
+mod load;
 mod machine;
+mod markdown;
 pub mod partner;
 mod plots;
 mod policy;
 mod qp;
+mod real_time;
 pub mod row;
 mod scale;
 mod step;
 mod still;
+mod stored;
+mod tables;
 mod teams;
 mod ticks;
 
-pub use compare::{CompareError, Earlier};
+pub use compare::Earlier;
+pub use load::LoadAverage;
+pub use markdown::{Section, sections};
 pub use row::Results;
+pub use stored::StoredError;
 
 use coordinator::record::RecordError;
 use coordinator::run::RunError;
@@ -30,6 +42,7 @@ use shared::place::PlaceError;
 use shared::services::ServiceError;
 use shared::stop::StopFlag;
 use std::path::PathBuf;
+use std::time::{Duration, Instant};
 
 /// What can be measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
@@ -42,7 +55,7 @@ pub enum Part {
     Exchange,
     /// One message between two processes, beside floors of the system
     Hop,
-    /// Large teams: start and real time; ticks per second of the environment
+    /// Large teams: start, real time; ticks per second of the environment
     Scale,
     /// Inference, and from the observation to the horizons
     Policy,
@@ -78,6 +91,8 @@ pub struct Options {
     pub dump: Option<PathBuf>,
     /// The ONNX Runtime library to measure beside the embedded back-end.
     pub onnxruntime: Option<PathBuf>,
+    /// Neither histograms nor plots are written.
+    pub tables_only: bool,
 }
 
 /// Why a benchmark could not be done.
@@ -139,12 +154,32 @@ fn failed(what: &'static str) -> impl Fn(std::io::Error) -> BenchError {
     move |source| BenchError::System { what, source }
 }
 
+impl Options {
+    /// The whole of `part`.
+    pub fn whole(part: Part) -> Self {
+        Self { part, quick: false, robots: None, dump: None, onnxruntime: None, tables_only: false }
+    }
+
+    /// `full`, or `quick` where only the form counts.
+    fn pick<T>(&self, full: T, quick: T) -> T {
+        if self.quick { quick } else { full }
+    }
+
+    /// Sizes of teams: what was asked for, or `full`, or `quick` where only the form counts.
+    fn sizes(&self, full: &[usize], quick: &[usize]) -> Vec<usize> {
+        match &self.robots {
+            Some(robots) => robots.clone(),
+            None => self.pick(full, quick).to_vec(),
+        }
+    }
+}
+
 /// Hears how far a benchmark is.
 pub trait Watch {
-    /// Part `name` begins, which has `steps` steps.
-    fn part(&self, name: &'static str, steps: usize);
-    /// One of them is done.
-    fn step(&self);
+    /// Part `name` begins.
+    fn part(&self, name: &'static str);
+    /// Something is done that was expected to take `seconds`, a share of what [`estimate`] gave.
+    fn done(&self, seconds: f64);
 }
 
 /// How much is measured, and how that is told.
@@ -155,66 +190,104 @@ struct Extent<'a> {
 }
 
 impl Extent<'_> {
-    /// `full`, or `quick` where only the form counts.
-    fn pick<T>(&self, full: T, quick: T) -> T {
-        if self.options.quick { quick } else { full }
+    /// Part `name` begins.
+    fn tell(&self, name: &'static str) {
+        self.watch.part(name);
     }
 
-    /// Sizes of teams: what was asked for, or `full`, or `quick` where only the form counts.
-    fn sizes(&self, full: &[usize], quick: &[usize]) -> Vec<usize> {
-        match &self.options.robots {
-            Some(robots) => robots.clone(),
-            None => self.pick(full, quick).to_vec(),
-        }
-    }
-
-    /// Part `name` has `steps` steps.
-    fn tell(&self, name: &'static str, steps: usize) {
-        self.watch.part(name, steps);
-    }
-
-    /// One of them is done.
-    fn advance(&self) -> Result<(), BenchError> {
-        self.watch.step();
+    /// What was expected to take `seconds` is done.
+    fn advance(&self, seconds: f64) -> Result<(), BenchError> {
+        self.watch.done(seconds);
         if self.stop.is_set() { Err(BenchError::Stopped) } else { Ok(()) }
     }
 }
 
-/// Measures what `options` name.
-pub fn measure(options: &Options, stop: &StopFlag, watch: &dyn Watch) -> Result<Results, BenchError> {
+/// A piece of a benchmark: its part, what it is expected to take (s), and how it is measured.
+type Piece = (Part, fn(&Options) -> f64, fn(&Extent<'_>, &mut Results) -> Result<(), BenchError>);
+
+/// All pieces, in their order.
+const PIECES: [Piece; 7] = [
+    (Part::Solver, qp::seconds, qp::run),
+    (Part::Step, step::seconds, step::run),
+    (Part::Hop, hop::seconds, hop::run),
+    (Part::Exchange, exchange::seconds, exchange::run),
+    (Part::Scale, scale::seconds, scale::run),
+    (Part::Scale, ticks::seconds, ticks::run),
+    (Part::Policy, policy::seconds, policy::run),
+];
+
+fn pieces(wanted: Part) -> impl Iterator<Item = Piece> {
+    PIECES.into_iter().filter(move |(part, ..)| wanted == *part || wanted == Part::All)
+}
+
+/// How long measuring will take on two quiet cores.
+pub fn estimate(options: &Options) -> Duration {
+    Duration::from_secs_f64(pieces(options.part).map(|(_, seconds, _)| seconds(options)).sum())
+}
+
+/// Measures what `options` name. `load`: the machine's before anything of this benchmark ran.
+pub fn measure(
+    options: &Options,
+    load: LoadAverage,
+    stop: &StopFlag,
+    watch: &dyn Watch,
+) -> Result<Results, BenchError> {
     let extent = Extent { options, stop, watch };
-    let mut results = Results::default();
-    let wanted = |part| options.part == part || options.part == Part::All;
-    if wanted(Part::Solver) {
-        qp::run(&extent, &mut results)?;
+    let start = Instant::now();
+    let mut results = Results { load_before: load, ..Results::default() };
+    for (_, _, run) in pieces(options.part) {
+        run(&extent, &mut results)?;
     }
-    if wanted(Part::Step) {
-        step::run(&extent, &mut results)?;
-    }
-    if wanted(Part::Hop) {
-        hop::run(&extent, &mut results)?;
-    }
-    if wanted(Part::Exchange) {
-        exchange::run(&extent, &mut results)?;
-    }
-    if wanted(Part::Scale) {
-        scale::run(&extent, &mut results)?;
-        ticks::run(&extent, &mut results)?;
-    }
-    if wanted(Part::Policy) {
-        policy::run(&extent, &mut results)?;
-    }
+    results.load_after = LoadAverage::now();
+    results.seconds = start.elapsed().as_secs_f64();
     Ok(results)
 }
 
-/// Writes the results into `folder`: tables, histograms, plots and the machine.
+/// Writes the results into `folder`: tables and the machine, and unless only tables are wanted histograms and
+/// plots.
 pub fn write(results: &Results, folder: &coordinator::record::RunFolder, options: &Options) -> Result<(), BenchError> {
-    folder.write("rows.csv", results.rows_table(None).csv().as_bytes())?;
+    folder.write("rows.csv", results.rows_table().csv().as_bytes())?;
     folder.write("figures.csv", results.figures_table().csv().as_bytes())?;
+    folder.write("machine.toml", machine::describe(options, results).as_bytes())?;
+    if options.tables_only {
+        return Ok(());
+    }
     folder.write("histograms.csv", results.histograms().as_bytes())?;
-    folder.write("machine.toml", machine::describe(options).as_bytes())?;
     for (name, svg) in plots::all(results) {
         folder.write(&name, svg.as_bytes())?;
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::cell::Cell;
+
+    #[derive(Default)]
+    struct Sum(Cell<f64>);
+
+    impl Watch for Sum {
+        fn part(&self, _: &'static str) {}
+
+        fn done(&self, seconds: f64) {
+            self.0.set(self.0.get() + seconds);
+        }
+    }
+
+    #[test]
+    fn what_is_told_to_be_done_adds_up_to_the_estimate() {
+        for part in [Part::Solver, Part::Step] {
+            let (options, sum) = (Options { quick: true, ..Options::whole(part) }, Sum::default());
+            measure(&options, LoadAverage::default(), &StopFlag::default(), &sum).unwrap();
+            let share = sum.0.get() / estimate(&options).as_secs_f64();
+            assert!((share - 1.0).abs() < 0.01, "{part:?}: {share}");
+        }
+    }
+
+    #[test]
+    fn the_whole_benchmark_takes_about_twenty_minutes() {
+        let minutes = estimate(&Options::whole(Part::All)).as_secs_f64() / 60.0;
+        assert!((10.0..22.0).contains(&minutes), "{minutes}");
+    }
 }

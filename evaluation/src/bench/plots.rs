@@ -6,9 +6,9 @@ use crate::figures::svg::{COLOURS, Chart, Labels};
 /// Every plot that the results allow, by file name.
 pub(super) fn all(results: &Results) -> Vec<(String, String)> {
     let mut plots = Vec::new();
-    for pace in ["full speed", "real time"] {
-        let name = format!("exchange_{}.svg", pace.replace(' ', "_"));
-        plots.extend(against_robots(results, pace).map(|svg| (name, svg)));
+    for (part, pace) in [("exchange", "full speed"), ("scale", "real time")] {
+        let name = format!("{part}_{}.svg", pace.replace(' ', "_"));
+        plots.extend(against_robots(results, part, pace).map(|svg| (name, svg)));
     }
     for part in results.parts() {
         let rows: Vec<&Row> = results.rows.iter().filter(|row| row.part == part).collect();
@@ -43,9 +43,8 @@ fn decades(values: impl Iterator<Item = f64> + Clone) -> Option<[f64; 2]> {
 }
 
 /// p50 of a tick over the number of robots, both logarithmic.
-fn against_robots(results: &Results, pace: &str) -> Option<String> {
-    let rows: Vec<&Row> =
-        results.rows.iter().filter(|row| row.part == "exchange" && row.name.ends_with(pace)).collect();
+fn against_robots(results: &Results, part: &str, pace: &str) -> Option<String> {
+    let rows: Vec<&Row> = results.rows.iter().filter(|row| row.part == part && row.name.ends_with(pace)).collect();
     let p50 = |row: &Row| row.latency.percentiles().p50_us;
     let times = decades(rows.iter().map(|row| p50(row)))?;
     let mut sizes: Vec<usize> = rows.iter().filter_map(|row| row.size).collect();
@@ -59,7 +58,7 @@ fn against_robots(results: &Results, pace: &str) -> Option<String> {
         title: &format!("A tick of the team, p50, {pace}"),
         x: "robots",
         y: "us",
-        command: "./run.sh bench exchange",
+        command: &format!("./run.sh bench {part}"),
     };
     let mut chart = Chart::logarithmic(&labels, [first.log10(), last.log10()], times);
     chart.mark_x(sizes.iter().map(|&size| ((size as f64).log10(), size.to_string())));

@@ -1,11 +1,11 @@
 //! One QP: the ladder beside Clarabel, on the same random problems.
 //!
-//! Every problem is solved several times and its shortest time counts; the distribution is over
-//! problems. What else the machine does is in the times that are left out.
+//! Every problem is solved once by each, and every solution is a sample. Solvers take turns, a chunk of
+//! problems each, so that what the machine does meanwhile falls on both.
 
 use super::dump;
 use super::row::{Results, Row};
-use super::{BenchError, Extent};
+use super::{BenchError, Extent, Options, cost};
 use coordinator::latency::Latency;
 use std::hint::black_box;
 use std::time::Instant;
@@ -16,47 +16,52 @@ use vodca::mpc::ladder::Ladder;
 use vodca::mpc::problem::{Plan, Problem, QpSolver};
 use vodca::mpc::sample::{Family, Sample};
 
-const HORIZONS: [i64; 2] = [20, 49];
+const HORIZONS: [usize; 2] = [20, 49];
 const ROWS: [usize; 3] = [0, 3, 10];
 const FAMILIES: [(Family, &str); 2] = [(Family::Safe, "safe"), (Family::Hard, "paper")];
 const SEED: u64 = 2026;
-/// Times that every problem is solved.
-const REPEATS: usize = 5;
+/// Problems of every case.
+const PROBLEMS: u64 = 20_000;
+/// Problems between two turns.
+const CHUNK: u64 = 200;
+/// So many problems of every case are compared with Clarabel at its most exact, and written for others.
+const CHECKED: u64 = 500;
+
+/// Problems of a case, and of a chunk of them.
+fn problems(options: &Options) -> (u64, u64) {
+    options.pick((PROBLEMS, CHUNK), (4, 4))
+}
+
+/// What a chunk of `problems` is expected to take, s.
+fn chunk_seconds(problems: u64) -> f64 {
+    problems as f64 * (cost::DRAWN + cost::LADDER + cost::CLARABEL)
+}
+
+/// What `problems` problems with changing horizons, and as many with a fixed one, are expected to take, s.
+fn changing_seconds(problems: u64) -> f64 {
+    2.0 * problems as f64 * (cost::DRAWN + cost::LADDER)
+}
+
+/// What this part is expected to take, s.
+pub(super) fn seconds(options: &Options) -> f64 {
+    let (problems, _) = problems(options);
+    let cases = (FAMILIES.len() * HORIZONS.len() * ROWS.len()) as f64;
+    let checked = CHECKED.min(problems) as f64 * 2.0 * cost::CLARABEL;
+    cases * (chunk_seconds(problems) + checked) + changing_seconds(problems)
+}
 
 /// Measures every family, horizon and number of rows, and writes the problems where that was asked for.
 pub(super) fn run(extent: &Extent<'_>, results: &mut Results) -> Result<(), BenchError> {
-    let problems = extent.pick(500, 4);
-    extent.tell("solver", FAMILIES.len() * HORIZONS.len() * ROWS.len() + 2);
+    extent.tell("solver");
     let mut dumped = Vec::new();
     let mut check = CrossCheck::default();
-    for (family, family_name) in FAMILIES {
+    for family in FAMILIES {
         for horizon in HORIZONS {
-            for rows in ROWS {
-                let samples: Vec<Sample> = (0..problems)
-                    .map(|index| Sample::new(family, Horizon::saturating(horizon), rows, SEED, index))
-                    .collect();
-                let case = format!("{family_name}, {rows} rows");
-                let (mut ladder, mut clarabel) = (Ladder::default(), Clarabel::unpolished(1e-9));
-                let ours = measure(&samples, |problem, plan| ladder.solve(problem, plan).is_ok());
-                let theirs = measure(&samples, |problem, plan| clarabel.solve(problem, plan).is_ok());
-                let p50 = ours.percentiles().p50_us;
-                let size = Some(horizon as usize);
-                results.row(Row::new("solver", format!("{case}: ladder"), size, ours));
-                results.row(Row::new("solver", format!("{case}: Clarabel"), size, theirs).over(Some(p50)));
-                for sample in &samples {
-                    let mut plan = Plan::default();
-                    let outcome = ladder.solve(&sample.problem(), &mut plan);
-                    check.compare(&sample.problem(), outcome.map(|_| &plan));
-                    if extent.options.dump.is_some() {
-                        dumped.push(dump::problem(
-                            family_name,
-                            rows,
-                            &sample.problem(),
-                            outcome.is_ok().then_some(&plan),
-                        ));
-                    }
-                }
-                extent.advance()?;
+            let mut cases = ROWS.map(|rows| Case { family, horizon, rows, times: Default::default() });
+            measure(extent, &mut cases)?;
+            for case in &cases {
+                case.tell(&cases[0], results);
+                case.check(extent, &mut check, &mut dumped)?;
             }
         }
     }
@@ -71,39 +76,113 @@ pub(super) fn run(extent: &Extent<'_>, results: &mut Results) -> Result<(), Benc
     }
 }
 
-/// What it costs that the horizon changes with every problem: uniform over 1..=49 beside their mean, 25.
-fn changing_horizons(extent: &Extent<'_>, results: &mut Results) -> Result<(), BenchError> {
-    let mut means = [0.0; 2];
-    for (changing, mean) in [false, true].into_iter().zip(&mut means) {
-        // 18 and 49 have no common divisor: every horizon comes as often as any other.
-        let horizon = |index: i64| if changing { 1 + (index * 18) % 49 } else { 25 };
-        let samples: Vec<Sample> = (0..extent.pick(980, 49))
-            .map(|index| Sample::new(Family::Safe, Horizon::saturating(horizon(index)), 3, SEED, index as u64))
-            .collect();
-        let mut ladder = Ladder::default();
-        let latency = measure(&samples, |problem, plan| ladder.solve(problem, plan).is_ok());
-        *mean = latency.mean_us();
-        let name = if changing { "safe, 3 rows, horizon changing 1..=49" } else { "safe, 3 rows, horizon fixed 25" };
-        results.row(Row::new("solver", name, None, latency));
-        extent.advance()?;
+/// Problems of one kind.
+struct Case {
+    family: (Family, &'static str),
+    horizon: usize,
+    rows: usize,
+    /// Of the ladder, and of Clarabel.
+    times: [Latency; 2],
+}
+
+impl Case {
+    fn sample(&self, index: u64) -> Sample {
+        Sample::new(self.family.0, Horizon::saturating(self.horizon as i64), self.rows, SEED, index)
     }
-    results.figure("solver", "mean QP with changing horizons over a fixed one", means[1] / means[0], "");
+
+    fn name(&self, solver: &str) -> String {
+        format!("{}, {} rows: {solver}", self.family.1, self.rows)
+    }
+
+    /// The ladder stands beside itself on problems without rows, Clarabel beside the ladder.
+    fn tell(&self, without_rows: &Self, results: &mut Results) {
+        let [ours, theirs] = self.times.clone();
+        let row = |solver, times| Row::new("solver", self.name(solver), Some(self.horizon), times);
+        let floor = without_rows.name("ladder");
+        let peer = row("Clarabel", theirs).over(self.name("ladder"), &ours);
+        results.row(row("ladder", ours).over(floor, &without_rows.times[0]));
+        results.row(peer);
+    }
+
+    fn check(
+        &self,
+        extent: &Extent<'_>,
+        check: &mut CrossCheck,
+        dumped: &mut Vec<serde_json::Value>,
+    ) -> Result<(), BenchError> {
+        let (problems, _) = problems(extent.options);
+        let (mut ladder, mut plan) = (Ladder::default(), Plan::default());
+        for index in 0..CHECKED.min(problems) {
+            let sample = self.sample(index);
+            let outcome = ladder.solve(&sample.problem(), &mut plan);
+            check.compare(&sample.problem(), outcome.map(|_| &plan));
+            if extent.options.dump.is_some() {
+                let plan = outcome.is_ok().then_some(&plan);
+                dumped.push(dump::problem(self.family.1, self.rows, &sample.problem(), plan));
+            }
+            extent.advance(2.0 * cost::CLARABEL)?;
+        }
+        Ok(())
+    }
+}
+
+/// Both solvers on all cases, chunk by chunk.
+fn measure(extent: &Extent<'_>, cases: &mut [Case]) -> Result<(), BenchError> {
+    let (problems, chunk) = problems(extent.options);
+    let (mut ladder, mut clarabel) = (Ladder::default(), Clarabel::unpolished(1e-9));
+    for first in (0..problems).step_by(chunk as usize) {
+        for case in cases.iter_mut() {
+            let samples: Vec<Sample> = (first..first + chunk).map(|index| case.sample(index)).collect();
+            time(&samples, &mut case.times[0], |problem, plan| ladder.solve(problem, plan).is_ok());
+            time(&samples, &mut case.times[1], |problem, plan| clarabel.solve(problem, plan).is_ok());
+            extent.advance(chunk_seconds(chunk))?;
+        }
+    }
     Ok(())
 }
 
-/// The shortest time of each problem. Problems follow each other, so that none finds its own data warm.
-fn measure(samples: &[Sample], mut solve: impl FnMut(&Problem<'_>, &mut Plan) -> bool) -> Latency {
-    let mut shortest = vec![u64::MAX; samples.len()];
-    let mut plan = Plan::default();
-    for _ in 0..REPEATS {
-        for (sample, shortest) in samples.iter().zip(&mut shortest) {
-            let problem = sample.problem();
-            let start = Instant::now();
-            black_box(solve(black_box(&problem), &mut plan));
-            *shortest = (*shortest).min(start.elapsed().as_nanos() as u64);
+/// What it costs that the horizon changes with every problem: uniform over 1..=49 beside their mean, 25.
+fn changing_horizons(extent: &Extent<'_>, results: &mut Results) -> Result<(), BenchError> {
+    // 18 and 49 have no common divisor: every horizon comes as often as any other.
+    let horizon = |changing: bool, index: u64| if changing { 1 + (index * 18) % 49 } else { 25 };
+    let (problems, _) = problems(extent.options);
+    let names = ["safe, 3 rows, horizon fixed 25", "safe, 3 rows, horizon changing 1..=49"];
+    let (mut ladder, mut times) = (Ladder::default(), [Latency::new(), Latency::new()]);
+    for first in (0..problems).step_by(49) {
+        for (changing, times) in [false, true].into_iter().zip(&mut times) {
+            let sample = |index| {
+                let steps = Horizon::saturating(horizon(changing, index) as i64);
+                Sample::new(Family::Safe, steps, 3, SEED, index)
+            };
+            let samples: Vec<Sample> = (first..first + 49).map(sample).collect();
+            time(&samples, times, |problem, plan| ladder.solve(problem, plan).is_ok());
         }
+        extent.advance(changing_seconds(49.min(problems - first)))?;
     }
-    let mut latency = Latency::new();
-    shortest.into_iter().for_each(|time| latency.record_ns(time));
-    latency
+    let [fixed, changing] = times;
+    results.figure(
+        "solver",
+        "mean QP with changing horizons over a fixed one",
+        changing.mean_us() / fixed.mean_us(),
+        "",
+    );
+    let peer = Row::new("solver", names[1], None, changing).over(names[0], &fixed);
+    results.row(Row::new("solver", names[0], None, fixed).as_floor());
+    results.row(peer);
+    Ok(())
+}
+
+/// Solves each problem once. One that is not counted comes first: it touches the solver's memory.
+fn time(samples: &[Sample], times: &mut Latency, mut solve: impl FnMut(&Problem<'_>, &mut Plan) -> bool) {
+    let mut plan = Plan::default();
+    if let Some(first) = samples.first() {
+        solve(&first.problem(), &mut plan);
+    }
+    for sample in samples {
+        let problem = sample.problem();
+        let start = Instant::now();
+        let solved = solve(black_box(&problem), &mut plan);
+        times.record(start.elapsed());
+        black_box(solved); // finding that there is no solution costs time as well
+    }
 }

@@ -1,13 +1,23 @@
-//! What was measured: distributions and single figures, and how they are printed and written.
+//! What was measured: distributions and single figures.
 
-use super::compare::Earlier;
-use crate::text_table::TextTable;
-use coordinator::latency::Latency;
-use coordinator::tick_parts::PARTS;
-use std::fmt::Write as _;
+use super::load::LoadAverage;
+use coordinator::latency::{Latency, Percentiles};
 
 /// Part of the rows that say where the time of a tick goes.
 pub const TICK_PARTS: &str = "tick parts";
+
+/// A percentile is told when at least this many samples lie beyond it: p99 from 1,000 samples on, p99.9 from
+/// 10,000. With fewer it would be little else than the maximum under another name.
+const BEYOND: u64 = 10;
+
+/// What a distribution is compared with.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Floor {
+    /// What: a floor of the system, which waits in the same way (spinning or sleeping), or a peer.
+    pub name: String,
+    /// Its p50, us, measured in turns with the row.
+    pub p50_us: f64,
+}
 
 /// A distribution of durations.
 #[derive(Clone, Debug)]
@@ -20,8 +30,8 @@ pub struct Row {
     pub size: Option<usize>,
     /// The durations.
     pub latency: Latency,
-    /// p50 of what it is compared with, us.
-    pub floor: Option<f64>,
+    /// What they are compared with.
+    pub floor: Option<Floor>,
 }
 
 /// A single number.
@@ -44,6 +54,12 @@ pub struct Results {
     pub rows: Vec<Row>,
     /// Single numbers.
     pub figures: Vec<Figure>,
+    /// The machine's load before anything was measured.
+    pub load_before: LoadAverage,
+    /// And when all was done: the benchmark's own processes are in it.
+    pub load_after: LoadAverage,
+    /// How long it took, s.
+    pub seconds: f64,
 }
 
 impl Row {
@@ -52,24 +68,39 @@ impl Row {
         Self { part, name: name.into(), size, latency, floor: None }
     }
 
-    /// The same, compared with something whose p50 is `floor` us.
-    pub fn over(self, floor: Option<f64>) -> Self {
-        Self { floor: floor.filter(|floor| *floor > 0.0), ..self }
+    /// The same, compared with `name`, whose distribution is `floor`.
+    pub fn over(self, name: impl Into<String>, floor: &Latency) -> Self {
+        let p50_us = floor.percentiles().p50_us;
+        Self { floor: (p50_us > 0.0).then(|| Floor { name: name.into(), p50_us }), ..self }
+    }
+
+    /// The same, a floor itself.
+    pub fn as_floor(self) -> Self {
+        let (name, latency) = (self.name.clone(), self.latency.clone());
+        self.over(name, &latency)
     }
 
     /// p50 over that of what it is compared with.
     pub fn ratio(&self) -> Option<f64> {
-        Some(self.latency.percentiles().p50_us / self.floor?)
+        Some(self.latency.percentiles().p50_us / self.floor.as_ref()?.p50_us)
+    }
+
+    /// p50, p90, p99, p99.9 and the longest, us; `None`: too few samples to tell.
+    pub fn told(&self) -> [Option<f64>; 5] {
+        told(&self.latency.percentiles())
     }
 }
 
-/// Three digits that count, for every size of number.
-fn digits(value: f64) -> String {
-    if value > 0.0 && value < 1e-3 {
-        return format!("{value:.1e}");
-    }
-    let places = if value >= 100.0 { 0 } else { 2 - value.max(0.01).log10().floor() as i32 };
-    format!("{value:.*}", places.clamp(0, 4) as usize)
+/// p50, p90, p99, p99.9 and the longest, us; `None` where too few samples lie beyond to tell.
+fn told(figures: &Percentiles) -> [Option<f64>; 5] {
+    let enough = |one_in: u64, value| (figures.count >= BEYOND * one_in).then_some(value);
+    [
+        Some(figures.p50_us),
+        enough(10, figures.p90_us),
+        enough(100, figures.p99_us),
+        enough(1_000, figures.p999_us),
+        Some(figures.max_us),
+    ]
 }
 
 impl Results {
@@ -93,147 +124,36 @@ impl Results {
         }
         parts
     }
-
-    /// All rows, or those of `part`.
-    pub fn rows_table(&self, part: Option<&str>) -> TextTable {
-        let wanted = |row: &&Row| part.is_none_or(|part| row.part == part);
-        self.table(self.rows.iter().filter(wanted), &Earlier::default(), part.is_none())
-    }
-
-    /// The rows of `part`, with their p50 over that of an earlier run.
-    pub fn compared_table(&self, part: &str, earlier: &Earlier) -> TextTable {
-        self.table(self.rows.iter().filter(|row| row.part == part), earlier, false)
-    }
-
-    fn table<'a>(&self, rows: impl Iterator<Item = &'a Row>, earlier: &Earlier, with_part: bool) -> TextTable {
-        let mut header =
-            vec!["what", "n", "count", "p50_us", "p90_us", "p99_us", "p999_us", "max_us", "floor_us", "ratio"];
-        if with_part {
-            header.insert(0, "part");
-        }
-        if !earlier.is_empty() {
-            header.push("now/then");
-        }
-        let mut table = TextTable::new(&header);
-        for row in rows {
-            let figures = row.latency.percentiles();
-            let times = [figures.p50_us, figures.p90_us, figures.p99_us, figures.p999_us, figures.max_us];
-            let mut cells: Vec<String> = Vec::new();
-            if with_part {
-                cells.push(row.part.into());
-            }
-            cells.push(row.name.clone());
-            cells.push(row.size.map_or(String::new(), |size| size.to_string()));
-            cells.push(figures.count.to_string());
-            cells.extend(times.map(digits));
-            cells.push(row.floor.map_or(String::new(), digits));
-            cells.push(row.ratio().map_or(String::new(), |ratio| format!("{ratio:.2}")));
-            if !earlier.is_empty() {
-                let then = earlier.p50(row.part, &row.name, row.size);
-                cells.push(then.map_or("new".into(), |then| format!("{:.2}", figures.p50_us / then)));
-            }
-            table.row(cells);
-        }
-        table
-    }
-
-    /// p50 of the parts of a tick, us: a row per team.
-    pub fn tick_parts_table(&self) -> TextTable {
-        let mut table = TextTable::new(&[&["team", "n"], &PARTS[..]].concat());
-        let mut teams: Vec<(&str, Option<usize>)> = Vec::new();
-        let rows: Vec<&Row> = self.rows.iter().filter(|row| row.part == TICK_PARTS).collect();
-        for row in &rows {
-            let Some((team, _)) = row.name.rsplit_once(": ") else { continue };
-            if !teams.contains(&(team, row.size)) {
-                teams.push((team, row.size));
-            }
-        }
-        for (team, size) in teams {
-            let cell = |part: &str| {
-                let wanted = |row: &&&Row| row.size == size && row.name.rsplit_once(": ") == Some((team, part));
-                rows.iter().find(wanted).map_or(String::new(), |row| digits(row.latency.percentiles().p50_us))
-            };
-            let size = size.map_or(String::new(), |size| size.to_string());
-            table.row([team.to_owned(), size].into_iter().chain(PARTS.map(cell)));
-        }
-        table
-    }
-
-    /// The single numbers.
-    pub fn figures_table(&self) -> TextTable {
-        let mut table = TextTable::new(&["part", "what", "value", "unit"]);
-        for figure in &self.figures {
-            table.row([figure.part.into(), figure.name.clone(), digits(figure.value), figure.unit.into()]);
-        }
-        table
-    }
-
-    /// Every distribution as CSV: how many durations were no longer than each bound.
-    pub fn histograms(&self) -> String {
-        let mut text = String::from("part,what,n,up_to_ns,count\n");
-        for row in &self.rows {
-            let size = row.size.map_or(String::new(), |size| size.to_string());
-            let name = row.name.replace('"', "'");
-            for (bound, count) in row.latency.buckets() {
-                // Writing to a String cannot fail.
-                let _ = writeln!(text, "{},\"{name}\",{size},{bound},{count}", row.part);
-            }
-        }
-        text
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn results() -> Results {
+    fn row(samples: u64) -> Row {
         let mut latency = Latency::new();
-        (1..=100).for_each(|n| latency.record_ns(n * 100));
-        let mut results = Results::default();
-        results.row(Row::new("hop", "a, busy", None, latency.clone()).over(Some(2.0)));
-        results.row(Row::new("exchange", "peer", Some(14), latency.clone()));
-        results.row(Row::new("hop", "b", None, latency));
-        results.figure("scale", "start", 1.25, "s");
-        results
+        (1..=samples).for_each(|n| latency.record_ns(n * 100));
+        Row::new("hop", "futex", None, latency)
     }
 
     #[test]
-    fn tables_hold_percentiles_and_the_ratio_to_the_floor() {
-        let text = results().rows_table(None).csv();
-        let lines: Vec<&str> = text.lines().collect();
-        assert_eq!(lines[0], "part,what,n,count,p50_us,p90_us,p99_us,p999_us,max_us,floor_us,ratio");
-        assert_eq!(lines[1], "hop,\"a, busy\",,100,5.00,9.01,9.90,10.0,10.0,2.00,2.50");
-        assert_eq!(lines[2], "exchange,peer,14,100,5.00,9.01,9.90,10.0,10.0,,");
-        assert_eq!(results().rows_table(Some("hop")).csv().lines().count(), 3);
-        assert_eq!(results().parts(), ["hop", "exchange"]);
+    fn a_percentile_is_told_from_ten_samples_beyond_it_on() {
+        let known = |samples| row(samples).told().map(|figure| figure.is_some());
+        assert_eq!(known(99), [true, false, false, false, true]);
+        assert_eq!(known(100), [true, true, false, false, true]);
+        assert_eq!(known(999), [true, true, false, false, true]);
+        assert_eq!(known(1_000), [true, true, true, false, true]);
+        assert_eq!(known(9_999), [true, true, true, false, true]);
+        assert_eq!(known(10_000), [true; 5]);
     }
 
     #[test]
-    fn parts_of_a_tick_stand_beside_each_other() {
-        let mut results = Results::default();
-        for (part, time) in PARTS.into_iter().zip(1..) {
-            let mut latency = Latency::new();
-            latency.record_ns(time * 1_000);
-            results.row(Row::new(TICK_PARTS, format!("peer, safe: {part}"), Some(14), latency));
-        }
-        let text = results.tick_parts_table().csv();
-        assert_eq!(text.lines().nth(1), Some("\"peer, safe\",14,1.00,2.00,3.00,4.00,5.00,6.00,7.00"), "{text}");
-    }
-
-    #[test]
-    fn histograms_hold_every_duration() {
-        let text = results().histograms();
-        let hop = text.lines().filter(|line| line.starts_with("hop,"));
-        let count: u64 = hop.filter_map(|line| line.rsplit(',').next()?.parse::<u64>().ok()).sum();
-        assert_eq!(count, 200);
-    }
-
-    #[test]
-    fn numbers_have_three_digits_that_count() {
-        assert_eq!(
-            [0.0, 3.2e-9, 0.123_45, 1.234_5, 12.345, 1234.5].map(digits),
-            ["0.0000", "3.2e-9", "0.123", "1.23", "12.3", "1234"]
-        );
+    fn a_row_is_its_p50_over_that_of_its_floor_and_a_floor_is_one() {
+        let (floor, twice) = (row(100), row(200));
+        assert_eq!(floor.ratio(), None);
+        let ratio = twice.over("futex", &floor.latency).ratio().unwrap();
+        assert!((ratio - 2.0).abs() < 0.01, "{ratio}");
+        assert_eq!(floor.as_floor().ratio(), Some(1.0));
+        assert_eq!(row(1).over("nothing", &Latency::new()).floor, None);
     }
 }

@@ -1,17 +1,19 @@
 //! Teams of processes that are measured: the product's own coordinator and exchange, nothing else.
 
 use super::{BenchError, partner};
+use coordinator::horizons::RunHorizons;
 use coordinator::launch::Program;
 use coordinator::policy::PolicyOptions;
 use coordinator::record::{PARAMS_FILE, RecordError, RunFolder, SCENARIO_FILE};
-use coordinator::run::{Options, Outcome, Run, RunTick};
+use coordinator::run::{Episode, EpisodeDriver, Options, Outcome, Run, RunTick};
+use coordinator::team::ProcessTeam;
 use shared::exchange::Kind;
 use shared::stop::StopFlag;
 use std::time::{Duration, Instant};
 use vodca::metrics::RunMetrics;
 use vodca::params::Profile;
-use vodca::play::Verdict;
-use vodca::scenario::set_up;
+use vodca::play::{Observer, Verdict};
+use vodca::scenario::{Scenario, set_up};
 
 /// What robots do in a tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,14 +22,11 @@ pub(super) enum Load {
     NoQp,
     /// The controller of the profile `safe`.
     Safe,
-    /// The controller of the profile `paper`.
-    Paper,
 }
 
 impl Load {
     /// All of them with their names in tables.
-    pub(super) const ALL: [(Load, &'static str); 3] =
-        [(Self::NoQp, "no QP"), (Self::Safe, "safe"), (Self::Paper, "paper")];
+    pub(super) const ALL: [(Load, &'static str); 2] = [(Self::NoQp, "no QP"), (Self::Safe, "safe")];
 }
 
 /// A team to be measured.
@@ -41,14 +40,14 @@ pub(super) struct TeamSpec<'a> {
     pub(super) kind: Option<Kind>,
     /// One tick per sample time.
     pub(super) real_time: bool,
-    /// Ticks at most; robots without a QP never arrive.
+    /// Ticks in all: a team that has arrived goes back to its start and drives again.
     pub(super) ticks: u64,
 }
 
 /// What a team came to.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Driven {
-    /// From starting processes to the announcement of tick 0.
+    /// From starting processes until tick 0 could be announced.
     pub(super) start: Duration,
     /// Ticks done.
     pub(super) ticks: u64,
@@ -56,14 +55,27 @@ pub(super) struct Driven {
     pub(super) driving: Duration,
 }
 
-/// Starts the team, lets it drive until it has arrived or its ticks are used up, and ends it. Ticks are
-/// handed to `observe`; what that does takes place between two ticks.
-pub(super) fn drive(
-    spec: &TeamSpec<'_>,
-    stop: &StopFlag,
-    observe: &mut dyn FnMut(&RunTick<'_>) -> Result<(), BenchError>,
-) -> Result<Driven, BenchError> {
-    drive_with(spec, None, stop, observe)
+/// What accompanies a team that is measured.
+pub(super) trait Companion {
+    /// Everybody is there; tick 0 is announced when this returns.
+    fn ready(&mut self) -> Result<(), BenchError> {
+        Ok(())
+    }
+
+    /// A tick is done, the `number`th of the team from 0; what this does takes place between two ticks.
+    fn tick(&mut self, number: u64, tick: &RunTick<'_>) -> Result<(), BenchError>;
+}
+
+/// Nothing but a tick to be seen.
+impl<F: FnMut(u64, &RunTick<'_>) -> Result<(), BenchError>> Companion for F {
+    fn tick(&mut self, number: u64, tick: &RunTick<'_>) -> Result<(), BenchError> {
+        self(number, tick)
+    }
+}
+
+/// Starts the team, lets it drive until its ticks are used up, and ends it.
+pub(super) fn drive(spec: &TeamSpec<'_>, stop: &StopFlag, companion: &mut dyn Companion) -> Result<Driven, BenchError> {
+    drive_with(spec, None, stop, companion)
 }
 
 /// [`drive`] with horizons of a policy.
@@ -71,11 +83,12 @@ pub(super) fn drive_with(
     spec: &TeamSpec<'_>,
     policy: Option<PolicyOptions>,
     stop: &StopFlag,
-    observe: &mut dyn FnMut(&RunTick<'_>) -> Result<(), BenchError>,
+    companion: &mut dyn Companion,
 ) -> Result<Driven, BenchError> {
-    let profile = if spec.load == Load::Paper { Profile::Paper } else { Profile::Safe };
-    let (mut scenario, params) = set_up(Some(spec.scenario), None, profile, &[])?;
-    scenario.max_ticks = spec.ticks;
+    let (mut scenario, params) = set_up(Some(spec.scenario), None, Profile::Safe, &[])?;
+    if spec.load == Load::NoQp {
+        scenario.max_ticks = spec.ticks; // they never arrive
+    }
     let home = tempfile::tempdir().map_err(|source| BenchError::System { what: "make a folder", source })?;
     let folder = RunFolder::at(&home.path().join("run"))?;
     let text = scenario.to_toml().map_err(|error| RecordError::Encode {
@@ -87,8 +100,30 @@ pub(super) fn drive_with(
     folder.write(PARAMS_FILE, params.to_toml().as_bytes())?;
 
     let robots = scenario.robots.len();
-    let mut options = Options::new(folder.path(), &scenario).map_err(coordinator::run::RunError::from)?;
-    options.exchange = spec.kind.unwrap_or(Kind::default_for(robots));
+    let options = options(&folder, &scenario, spec, policy)?;
+    let began = Instant::now();
+    let run = Run::launch(&scenario, &params, options, stop)?;
+    let mut laps = Laps { spec, companion, began, first: 0, driven: None, failed: None };
+    let ended = run.play_episodes(&mut laps)?;
+    let (failed, driven) = (laps.failed, laps.driven.unwrap_or_default());
+    if let Some(error) = failed {
+        return Err(error);
+    }
+    match ended.outcome {
+        Outcome::Completed | Outcome::TimedOut => Ok(driven),
+        Outcome::Stopped => Err(BenchError::Stopped),
+        Outcome::PeerLost(lost) => Err(BenchError::Team { robots, reason: lost.to_string() }),
+    }
+}
+
+fn options(
+    folder: &RunFolder,
+    scenario: &Scenario,
+    spec: &TeamSpec<'_>,
+    policy: Option<PolicyOptions>,
+) -> Result<Options, BenchError> {
+    let mut options = Options::new(folder.path(), scenario).map_err(coordinator::run::RunError::from)?;
+    options.exchange = spec.kind.unwrap_or(options.exchange);
     options.real_time = spec.real_time;
     options.policy = policy;
     options.tick_deadline = Duration::from_secs(20); // a busy machine shall spoil a figure, not the benchmark
@@ -100,32 +135,58 @@ pub(super) fn drive_with(
             arguments: vec![partner::COMMAND.into(), "still".into()],
         });
     }
-    let (mut metrics, mut failed, mut driven) = (RunMetrics::new(&scenario, &params), None, Driven::default());
-    let mut first = 0;
-    let began = Instant::now();
-    let run = Run::launch(&scenario, &params, options, stop)?;
-    let mut watch = |tick: &RunTick<'_>| {
-        if tick.tick == 0 {
-            // What has passed since the announcement belongs to the tick.
-            let since = Duration::from_nanos(shared::os::now_ns().saturating_sub(tick.team.moments().announced));
-            driven.start = began.elapsed().saturating_sub(since);
-            first = tick.team.moments().announced;
-        }
-        driven.ticks = tick.tick + 1;
-        driven.driving = Duration::from_nanos(tick.team.moments().collected.saturating_sub(first));
-        if let Err(error) = observe(tick) {
-            failed = Some(error);
-            return Ok(Verdict::Over);
-        }
-        Ok(Verdict::Continue)
-    };
-    let ended = run.play(&mut [&mut watch], &mut metrics)?;
-    if let Some(error) = failed {
-        return Err(error);
+    Ok(options)
+}
+
+/// Episode after episode until the ticks are used up.
+struct Laps<'a> {
+    spec: &'a TeamSpec<'a>,
+    companion: &'a mut dyn Companion,
+    /// Start of the processes.
+    began: Instant,
+    /// Announcement of the first tick, ns.
+    first: u64,
+    /// `None` before the first episode.
+    driven: Option<Driven>,
+    failed: Option<BenchError>,
+}
+
+impl Laps<'_> {
+    fn over(&self) -> bool {
+        self.failed.is_some() || self.driven.is_some_and(|driven| driven.ticks >= self.spec.ticks)
     }
-    match ended.outcome {
-        Outcome::Completed | Outcome::TimedOut => Ok(driven),
-        Outcome::Stopped => Err(BenchError::Stopped),
-        Outcome::PeerLost(lost) => Err(BenchError::Team { robots, reason: lost.to_string() }),
+}
+
+impl EpisodeDriver for Laps<'_> {
+    fn begin(&mut self, _: &Episode<'_>) -> Result<Option<[u8; 32]>, RecordError> {
+        if self.driven.is_none() {
+            self.driven = Some(Driven { start: self.began.elapsed(), ..Driven::default() });
+            self.failed = self.companion.ready().err();
+        }
+        Ok(None)
+    }
+
+    fn another(&mut self, _: &RunMetrics) -> Result<bool, RecordError> {
+        Ok(!self.over())
+    }
+}
+
+impl Observer<ProcessTeam, RunHorizons> for Laps<'_> {
+    type Error = RecordError;
+
+    fn tick(&mut self, tick: &RunTick<'_>) -> Result<Verdict, RecordError> {
+        let moments = tick.team.moments();
+        let driven = self.driven.get_or_insert_default();
+        if driven.ticks == 0 {
+            self.first = moments.announced;
+        }
+        let number = driven.ticks;
+        driven.ticks += 1;
+        driven.driving = Duration::from_nanos(moments.collected.saturating_sub(self.first));
+        if self.failed.is_none() {
+            self.failed = self.companion.tick(number, tick).err();
+        }
+        let arrived = self.spec.load != Load::NoQp && tick.metrics.arrived_all();
+        Ok(if arrived || self.over() { Verdict::Over } else { Verdict::Continue })
     }
 }
