@@ -138,8 +138,10 @@ mod tests {
         let (position, next_position) = (Position::from(from), Position::from(to));
         Step {
             position,
+            measured: position,
             input: Input::zeros(),
             next_position,
+            next_measured: next_position,
             horizon: Horizon::new(horizon).unwrap(),
             rows: 0,
             level: Level::ClosedForm,
