@@ -1,4 +1,4 @@
-//! Prints PARAMETERS.md: `cargo run -p shared --example parameters > PARAMETERS.md`.
+//! Prints docs/PARAMETERS.md: `cargo run -p vodca --example parameters > docs/PARAMETERS.md`.
 
 fn main() {
     print!("{}", vodca::params::table::markdown());

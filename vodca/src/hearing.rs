@@ -1,5 +1,4 @@
-//! What a robot hears of the others, disturbed on purpose where the parameters say so (safe.md,
-//! section 3). Draws depend on seed, tick, sender and listener only.
+//! What a robot knows of the others, disturbed on purpose where the parameters say so. Draws depend on seed, tick, sender and listener only.
 
 use crate::Position;
 use crate::controller::Neighbour;
@@ -8,7 +7,7 @@ use crate::prediction::Prediction;
 use crate::random::{self, Use};
 use crate::scenario::Scenario;
 
-/// The ears of one robot.
+/// What one robot has heard of all others.
 #[derive(Clone, Debug)]
 pub struct Hearing {
     listener: usize,

@@ -11,7 +11,7 @@ use crate::{Input, Position};
 pub struct Prediction {
     horizon: Horizon,
     states: [Position; MAX_HORIZON + 1],
-    /// Where the robot wants to go; neighbours need it to give way (safe.md, rule 3).
+    /// Where the robot wants to go; neighbours need it to give way (ARCHITECTURE, rule 3).
     pub set_point: Position,
 }
 

@@ -1,4 +1,4 @@
-//! What the plan is drawn to (safe.md, rules 1 and 4).
+//! The reference that the cost draws a plan to (ARCHITECTURE, rules 1 and 4).
 
 use crate::conflict::detection::toward;
 use crate::conflict::rows::turned;

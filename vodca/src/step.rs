@@ -6,7 +6,7 @@ use crate::prediction::Prediction;
 use crate::{Input, Position};
 use serde::{Deserialize, Serialize};
 
-/// Which rung of the solver ladder gave the plan (solver.md).
+/// Which rung of the solver ladder gave the plan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[repr(u8)]
@@ -61,7 +61,7 @@ pub struct Step {
     pub level: Level,
     /// How the plan came about.
     pub status: Status,
-    /// Whether the last check changed the input (safe.md, rule 6).
+    /// Whether the last check changed the input (ARCHITECTURE, rule 6).
     pub shielded: bool,
     /// The plan published at this tick.
     pub plan: Prediction,

@@ -80,7 +80,7 @@ impl VodcaController {
         collision_rows(vodca, min_separation, turn, &previous.prediction, view.horizon, hazards, &mut self.rows)
     }
 
-    /// Rule 4: the right turn that the traffic ahead asks for, rad.
+    /// Rule 8: the right turn that the traffic ahead asks for, rad.
     fn look_ahead(&mut self, view: &View<'_>) -> f64 {
         let Self { params, layout, traffic, robot, .. } = self;
         let Params { model, aim, .. } = &*params;

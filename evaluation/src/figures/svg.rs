@@ -187,7 +187,8 @@ impl Chart {
     }
 }
 
-fn escaped(text: &str) -> String {
+/// Text as it may stand between tags.
+pub(super) fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;")
 }
 

@@ -60,7 +60,8 @@ impl Case {
         self.switches.params()
     }
 
-    /// Allowed deviation of positions at `tick`, m (method.md, section 8).
+    /// Allowed deviation of positions at `tick`, m: tight while the reference is exact, then what the loop's own
+    /// sensitivity to rounding allows.
     fn allowed(&self, tick: usize, tolerance: f64) -> f64 {
         if tick <= self.exact_steps { tolerance } else { tolerance.max(100.0 * self.sensitivity[tick]) }
     }

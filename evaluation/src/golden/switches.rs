@@ -1,4 +1,4 @@
-//! The golden files' switches (method.md, section 8) as parameters.
+//! The golden files' switches as parameters.
 
 use serde::Deserialize;
 use vodca::params::{BeyondHorizon, Infeasible, Params, RowChoice, RowStep, Softness, Tie};

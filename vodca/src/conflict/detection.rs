@@ -18,7 +18,7 @@ pub enum Course<'a> {
         age: usize,
     },
     /// It walks straight from a place to another with `stride` metres per step on its largest axis
-    /// (a neighbour's wish, safe.md rule 3).
+    /// (how a neighbour would move if nobody were in its way; ARCHITECTURE, rule 3).
     Wish {
         /// Present position, m.
         from: Position,

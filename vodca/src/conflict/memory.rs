@@ -5,7 +5,7 @@ use crate::params::{Aim, Vodca};
 /// Two running means, 0 at the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ConflictMemory {
-    /// phi s of rule 4 (safe.md), rad: by how much the aim is turned right, with weight `aim.memory`.
+    /// phi s of rule 4 (ARCHITECTURE), rad: by how much the aim is turned right, with weight `aim.memory`.
     pub aim: f64,
     /// How long there have been collision rows, with weight `vodca.lasting_memory`, 0..=1.
     pub lasting: f64,

@@ -10,7 +10,7 @@ use crate::params::Aim;
 /// Turns that are tried: 0, and this many up to `aim.most`.
 const TURNS: usize = 12;
 
-/// A straight walk: what a robot wishes to do (safe.md, rule 3).
+/// A straight walk: the motion expected of a robot that meets nobody (ARCHITECTURE, rules 3 and 8).
 #[derive(Clone, Copy, Debug)]
 pub struct Walk {
     /// Present position, m.

@@ -9,8 +9,8 @@ pub use summary::{RobotSummary, RunSummary, SolverLevels, Statuses};
 use crate::Position;
 use crate::separation::separation;
 
-/// Distances that count as below min_separation are more than this below it, m: paths touch it exactly
-/// (safe.md, section 5).
+/// Distances that count as below min_separation are more than this below it, m: a hard row that
+/// binds leaves exactly min_separation, up to rounding.
 pub const SEPARATION_TOLERANCE: f64 = 1e-6;
 
 /// A disc that may be hit: the separation it is owed beyond min_separation is `extra`, m

@@ -23,7 +23,8 @@ impl Row {
     }
 }
 
-/// Price of violating a soft row by `e` metres: `linear * e + quadratic / 2 * e^2` (method.md, section 3).
+/// Price of violating a soft row by `e` metres: `linear * e + quadratic / 2 * e^2`
+/// (ours: the paper does not say what happens when hard rows have no solution).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SlackPrice {
     /// Per metre.

@@ -116,7 +116,7 @@ fn constant(set_point: Position) -> Target {
     Target { kind: TargetKind::SetPoint, states: [set_point; MAX_HORIZON], inputs: [Input::zeros(); MAX_HORIZON] }
 }
 
-/// The straight line with the largest axis at full speed (safe.md, rule 1).
+/// The straight line with the largest axis at full speed (ARCHITECTURE, rule 1).
 fn straight(position: Position, set_point: Position) -> Target {
     let way = set_point - position;
     let at = |step: usize| position + way * (MAX_SPEED * SAMPLE_TIME * step as f64 / way.amax()).min(1.0);
@@ -149,7 +149,7 @@ impl Draw {
         Row { step, normal, offset: MIN_SEPARATION + normal.dot(&hazard), hard }
     }
 
-    /// A hard first-step row that standing still satisfies (safe.md, rule 5).
+    /// A hard first-step row that standing still satisfies (ARCHITECTURE, rule 5).
     fn cell(&mut self, position: Position) -> Row {
         let normal = direction(self.between(0.0, TAU));
         let offset = normal.dot(&position) - self.between(-0.05, 0.3).max(0.0);

@@ -26,11 +26,11 @@ pub struct Params {
     pub mpc: Mpc,
     /// Detection of conflicts and the rows they give.
     pub vodca: Vodca,
-    /// Aim to the right while in conflict (safe.md, rule 4).
+    /// Aim to the right while in conflict (ARCHITECTURE, rule 4).
     pub aim: Aim,
-    /// Give way to robots that still travel (safe.md, rule 3).
+    /// Give way to robots that still travel (ARCHITECTURE, rule 3).
     pub give_way: GiveWay,
-    /// Hard cell rows on the first step (safe.md, rule 5).
+    /// Hard cell rows on the first step (ARCHITECTURE, rule 5).
     pub cell: Cell,
     /// Changes of the horizon after its source chose it.
     pub horizon: HorizonParams,
@@ -80,7 +80,8 @@ pub struct Orca {
     pub push: f64,
 }
 
-/// What disturbs measuring and the exchange, on purpose (safe.md, section 3). All draws are seeded.
+/// What disturbs measuring and the exchange, on purpose. All draws are seeded. What it does to
+/// the guarantee: ARCHITECTURE, "What weakens the assumptions".
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Disturbance {
@@ -124,11 +125,11 @@ pub struct Mpc {
 pub enum Reference {
     /// The set-point at every step, zero input (the paper's X^d).
     SetPoint,
-    /// A straight line to the set-point with the largest axis at full speed (safe.md, rule 1).
+    /// A straight line to the set-point with the largest axis at full speed (ARCHITECTURE, rule 1).
     Straight,
 }
 
-/// VODCA: detection and rows (method.md, section 3).
+/// VODCA: detection and rows (paper, section III-C).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Vodca {
@@ -228,7 +229,7 @@ pub enum Infeasible {
     Hold,
 }
 
-/// Aim to the right while in conflict (safe.md, rule 4).
+/// Aim to the right while in conflict (ARCHITECTURE, rule 4).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Aim {
@@ -255,7 +256,7 @@ impl Aim {
     }
 }
 
-/// Give way to robots that still travel (safe.md, rule 3).
+/// Give way to robots that still travel (ARCHITECTURE, rule 3).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GiveWay {
@@ -265,7 +266,7 @@ pub struct GiveWay {
     pub clearance: f64,
 }
 
-/// Hard cell rows on the first step (safe.md, rule 5).
+/// Hard cell rows on the first step (ARCHITECTURE, rule 5).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Cell {
@@ -276,7 +277,7 @@ pub struct Cell {
     /// kappa, m: move away demanded per tick where the distance is below the cells' separation.
     pub escape: f64,
     /// E, m: the cells keep `separation + 3 E` and demand `escape + E`, so that measuring errors of at
-    /// most E per position leave `separation` (safe.md, section 2).
+    /// most E per position leave `separation` (ARCHITECTURE, "What weakens the assumptions").
     pub noise_bound: f64,
 }
 

@@ -8,9 +8,9 @@ use std::str::FromStr;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Profile {
-    /// The paper's method, read as method.md says.
+    /// The paper's method; where it is silent, `docs/PARAMETERS.md` says how it is read.
     Paper,
-    /// Full separation by construction, and everyone arrives (safe.md).
+    /// The full separation by construction, and rules that bring everybody to the set-point (`docs/ARCHITECTURE.md`).
     Safe,
     /// The baseline ORCA.
     Orca,
@@ -18,7 +18,7 @@ pub enum Profile {
     OrcaRh,
 }
 
-/// A profile nobody knows.
+/// The name of a profile that does not exist.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("unknown profile `{0}`; the profiles are: paper, safe, orca, orca-rh")]
 pub struct UnknownProfile(pub String);
@@ -48,7 +48,7 @@ impl fmt::Display for Profile {
 }
 
 impl Params {
-    /// The paper's method (method.md, section 3).
+    /// The paper's method (section III, constants of Table I).
     pub fn paper() -> Self {
         Self {
             model: Model { sample_time: 0.2, max_speed: 1.5, min_separation: 1.5 },
@@ -88,7 +88,7 @@ impl Params {
         }
     }
 
-    /// The safe controller (safe.md, section 1).
+    /// The safe controller (ARCHITECTURE, rules 1 to 11).
     pub fn safe() -> Self {
         let mut params = Self::paper();
         params.mpc.reference = Reference::Straight;

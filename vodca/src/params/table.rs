@@ -113,36 +113,36 @@ pub const ENTRIES: &[Entry] = &[
     entry("model.min_separation", "m", Above(0.0, 100.0), "paper: r_min, Table I", "centre distance that is kept; discs have half of it as radius; cell.separation follows it unless it is set itself"),
     entry("mpc.state_weight", "1/m^2", Above(0.0, 1e6), "paper: Q = q I, Table I", "larger: faster to the reference"),
     entry("mpc.input_weight", "s^2/m^2", Above(0.0, 1e6), "paper: W = w I, Table I", "larger: smoother and slower; 1 is worse in dense scenes"),
-    entry("mpc.reference", "-", OneOf(&["set_point", "straight"]), "paper: X^d; safe rule 1", "straight: no 45 degree start, no slow tail, and a free optimum without a QP"),
+    entry("mpc.reference", "-", OneOf(&["set_point", "straight"]), "paper: X^d; rule 1", "straight: no 45 degree start, no slow tail, and a free optimum without a QP"),
     entry("vodca.rows", "-", OneOf(&["first", "each", "nearby"]), "paper: eq. er13", "first: one row as printed; each: one per conflicting hazard; nearby: all near ones at the first conflict"),
     entry("vodca.row_step", "-", OneOf(&["conflict", "before_conflict"]), "paper: k_c or k_c - 1", "prediction step on which a row acts"),
     entry("vodca.beyond_horizon", "-", OneOf(&["clamp", "skip", "limit"]), "paper: er13 is silent on k_c > N", "a conflict beyond the new horizon: row at its end, no row, or not looked for"),
     entry("vodca.first_compared_step", "step", Whole(1, 2), "paper: l = 1 is the present", "2 ignores conflicts that already exist"),
     entry("vodca.tie", "-", OneOf(&["nearest", "index"]), "ours", "which hazard `first` takes among equals"),
     entry("vodca.nearby_factor", "-", Between(1.0, 100.0), "Luis and Schoellig 2019", "reach of `nearby` as a multiple of model.min_separation"),
-    entry("vodca.turn", "rad", Between(-1.5, 1.5), "safe rule 2: theta", "normals turned left: robots pass on the right; smaller: shorter dense paths, more segregation stalls"),
-    entry("vodca.turn_lasting", "rad", Between(-1.5, 1.5), "ours", "vodca.turn after a long conflict: what small angles leave stuck, large ones resolve"),
-    entry("vodca.lasting_memory", "-", Above(0.0, 1.0), "ours", "share of the newest tick in the memory of how long a conflict has lasted; smaller: the turn grows later"),
-    entry("vodca.patience", "-", Between(0.0, 1.0), "ours", "a robot whose conflict has lasted for this share of its memory lets everybody pass who has farther to go, and walks the shortest way round the obstacles; 1 is off: pockets beside obstacles and knots of parked robots are never left"),
-    entry("vodca.back_off", "-", Between(0.0, 1.0), "ours", "a robot without patience whose conflict has lasted for this share walks off in a random direction now and then; 1 is off: robots that all wait for another one wait for ever; smaller: dense crowds dissolve later"),
-    entry("vodca.softness", "-", OneOf(&["hard", "soft"]), "safe rule 2", "soft: rows have slack from the start, the QP is always feasible"),
+    entry("vodca.turn", "rad", Between(-1.5, 1.5), "rule 2: theta", "normals turned left: robots pass on the right; smaller: shorter dense paths, more segregation stalls"),
+    entry("vodca.turn_lasting", "rad", Between(-1.5, 1.5), "ours: rule 7", "vodca.turn after a long conflict: what small angles leave stuck, large ones resolve"),
+    entry("vodca.lasting_memory", "-", Above(0.0, 1.0), "ours: rule 7", "share of the newest tick in the memory of how long a conflict has lasted; smaller: the turn grows later"),
+    entry("vodca.patience", "-", Between(0.0, 1.0), "ours: rule 9", "a robot whose conflict has lasted for this share of its memory lets everybody pass who has farther to go, and walks the shortest way round the obstacles; 1 is off: pockets beside obstacles and knots of parked robots are never left"),
+    entry("vodca.back_off", "-", Between(0.0, 1.0), "ours: rule 10", "a robot without patience whose conflict has lasted for this share walks off in a random direction now and then; 1 is off: robots that all wait for another one wait for ever; smaller: dense crowds dissolve later"),
+    entry("vodca.softness", "-", OneOf(&["hard", "soft"]), "rule 2", "soft: rows have slack from the start, the QP is always feasible"),
     entry("vodca.infeasible", "-", OneOf(&["relax", "hold"]), "paper is silent", "hard rows without a solution: solve again with slack, or stand still (a trap)"),
     entry("vodca.slack_linear", "1/m", Between(0.0, 1e9), "ours: rho1", "exact penalty: with 1e3 rows that could hold are violated in 17 % of problems, with 1e4 never; smaller: shorter dense paths (the cells keep the separation), slower past obstacles"),
     entry("vodca.slack_quadratic", "1/m^2", Above(0.0, 1e9), "ours: rho2", "curvature of the penalty; keeps the QP strictly convex in the slack"),
-    entry("aim.angle", "rad", Between(0.0, 1.5), "safe rule 4: phi", "right turn of the aim that a conflict asks for, and the least that traffic ahead asks for"),
-    entry("aim.memory", "-", Above(0.0, 1.0), "safe rule 4: lambda", "share of the newest tick; 1 forgets at once and chatters"),
-    entry("aim.fade_start", "m", Between(0.0, 1000.0), "safe rule 4: r", "nearer to the set-point than this nothing is turned"),
-    entry("aim.fade_end", "m", Above(0.0, 1000.0), "safe rule 4: 3 r", "farther from the set-point than this the turn is full"),
-    entry("aim.look_ahead", "step", Whole(0, 1000), "ours", "whoever a straight walk will meet within this many steps is traffic ahead, whatever the horizons; 0 is off"),
-    entry("aim.most", "rad", Between(0.0, 1.5), "ours", "largest right turn that traffic ahead asks for; smaller: crowded centres jam, larger: wide ways through boxes"),
-    entry("aim.price", "1/rad", Between(0.0, 1e6), "ours", "a turn is taken where it spares more meetings than this times its size, if everybody takes it; smaller: quicker through crowded centres, longer paths in boxes"),
-    entry("give_way.radius", "m", Between(0.0, 1000.0), "safe rule 3: r_y", "robots this near their set-point give way; 0 is off"),
-    entry("give_way.clearance", "m", Between(0.0, 100.0), "safe rule 3: c_y", "added to min_separation while giving way"),
-    entry("cell.enabled", "-", Switch, "safe rules 5 and 6", "the guarantee of separation; off: only the rows of vodca"),
-    entry("cell.separation", "m", Above(0.0, 100.0), "safe rule 5: r_s", "separation guaranteed; left out, it is model.min_separation wherever that one is set; measurement noise of at most E per position needs min_separation + 3 E"),
-    entry("cell.escape", "m/tick", Between(0.0, 10.0), "safe section 2: kappa", "move away demanded where the distance is below cell.separation"),
-    entry("cell.noise_bound", "m", Between(0.0, 10.0), "safe section 2: E", "measuring errors of at most this leave cell.separation: cells keep 3 E more and demand E more escape"),
-    entry("horizon.jitter", "step", Whole(0, 48), "ours", "each horizon moves by a seeded draw of at most this, those of a script excepted; breaks limit cycles of fixed horizons"),
+    entry("aim.angle", "rad", Between(0.0, 1.5), "rule 4: phi", "right turn of the aim that a conflict asks for, and the least that traffic ahead asks for"),
+    entry("aim.memory", "-", Above(0.0, 1.0), "rule 4: lambda", "share of the newest tick; 1 forgets at once and chatters"),
+    entry("aim.fade_start", "m", Between(0.0, 1000.0), "rule 4: r", "nearer to the set-point than this nothing is turned"),
+    entry("aim.fade_end", "m", Above(0.0, 1000.0), "rule 4: 3 r", "farther from the set-point than this the turn is full"),
+    entry("aim.look_ahead", "step", Whole(0, 1000), "ours: rule 8", "whoever a straight walk will meet within this many steps is traffic ahead, whatever the horizons; 0 is off"),
+    entry("aim.most", "rad", Between(0.0, 1.5), "ours: rule 8", "largest right turn that traffic ahead asks for; smaller: crowded centres jam, larger: wide ways through boxes"),
+    entry("aim.price", "1/rad", Between(0.0, 1e6), "ours: rule 8", "a turn is taken where it spares more meetings than this times its size, if everybody takes it; smaller: quicker through crowded centres, longer paths in boxes"),
+    entry("give_way.radius", "m", Between(0.0, 1000.0), "rule 3: r_y", "robots this near their set-point give way; 0 is off"),
+    entry("give_way.clearance", "m", Between(0.0, 100.0), "rule 3: c_y", "added to min_separation while giving way"),
+    entry("cell.enabled", "-", Switch, "rules 5 and 6", "the guarantee of separation; off: only the rows of vodca"),
+    entry("cell.separation", "m", Above(0.0, 100.0), "rule 5: r_s", "separation guaranteed; left out, it is model.min_separation wherever that one is set; measurement noise of at most E per position needs min_separation + 3 E"),
+    entry("cell.escape", "m/tick", Between(0.0, 10.0), "guarantee: kappa", "move away demanded where the distance is below cell.separation"),
+    entry("cell.noise_bound", "m", Between(0.0, 10.0), "guarantee: E", "measuring errors of at most this leave cell.separation: cells keep 3 E more and demand E more escape"),
+    entry("horizon.jitter", "step", Whole(0, 48), "ours: rule 11", "each horizon moves by a seeded draw of at most this, those of a script excepted; breaks limit cycles of fixed horizons"),
     entry("episode.arrival_tolerance", "m", Above(0.0, 100.0), "paper: e < 0.1", "a robot nearer to its set-point than this has arrived"),
     entry("episode.collision_factor", "-", Between(0.0, 1.0), "paper: 0.5 r_min", "share of min_separation below which two discs count as collided"),
     entry("controller.kind", "-", OneOf(&["vodca", "orca"]), "ours", "vodca: the MPC; orca: the baseline without plans and without guarantee"),
@@ -152,10 +152,10 @@ pub const ENTRIES: &[Entry] = &[
     entry("orca.aim", "rad", Between(0.0, 1.5), "ours: ORCA-RH 0.35", "every robot aims this far to the right of its set-point"),
     entry("orca.fade", "m", Above(0.0, 1000.0), "ours", "nearer to the set-point than this the aim fades linearly to none; longer: shorter paths"),
     entry("orca.push", "m/s", Between(0.0, 10.0), "ours", "seeded push of the wanted velocity, uniform over a disc, every tick; 0.3 breaks the deadlock of exact rings"),
-    entry("disturbance.noise", "m", Between(0.0, 10.0), "safe section 3", "largest error of a measured position, uniform over a disc"),
-    entry("disturbance.plan_delay", "tick", Whole(0, 100), "safe section 3", "plans arrive late; positions do not"),
-    entry("disturbance.plan_loss", "-", Between(0.0, 1.0), "safe section 3", "share of plans that get lost; positions do not"),
-    entry("disturbance.position_loss", "-", Between(0.0, 1.0), "safe section 3", "share of messages that get lost whole"),
+    entry("disturbance.noise", "m", Between(0.0, 10.0), "ours", "largest error of a measured position, uniform over a disc"),
+    entry("disturbance.plan_delay", "tick", Whole(0, 100), "ours", "plans arrive late; positions do not"),
+    entry("disturbance.plan_loss", "-", Between(0.0, 1.0), "ours", "share of plans that get lost; positions do not"),
+    entry("disturbance.position_loss", "-", Between(0.0, 1.0), "ours", "share of messages that get lost whole"),
 ];
 
 /// The entry of `key`.
@@ -205,11 +205,11 @@ pub fn listing(params: &Params) -> String {
         .collect()
 }
 
-/// All parameters as the Markdown table of PARAMETERS.md, with the values of both profiles.
+/// All parameters as the Markdown table of docs/PARAMETERS.md, with the values of both profiles.
 pub fn markdown() -> String {
     let mut text = String::from(
         "# Parameters\n\n\
-         Written by `cargo run -p shared --example parameters > PARAMETERS.md` from `shared/src/params/table.rs`.\n\
+         Written by `cargo run -p vodca --example parameters > docs/PARAMETERS.md` from `vodca/src/params/table.rs`.\n\
          Change one for a run with `--set KEY=VALUE`, or in a scenario under `[params]`.\n\n\
          | key | unit | allowed | paper | safe | source | effect |\n|---|---|---|---|---|---|---|\n",
     );
@@ -240,8 +240,8 @@ mod tests {
 
     #[test]
     fn the_page_of_parameters_is_what_this_table_says() {
-        let page = include_str!("../../../PARAMETERS.md");
-        assert_eq!(page, markdown(), "write it anew: cargo run -p shared --example parameters > PARAMETERS.md");
+        let page = include_str!("../../../docs/PARAMETERS.md");
+        assert_eq!(page, markdown(), "write it anew: cargo run -p vodca --example parameters > docs/PARAMETERS.md");
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! Hard cell rows on the first step (safe.md, rule 5).
+//! Hard cell rows on the first step (ARCHITECTURE, rule 5).
 //!
 //! Between two robots at distance d >= r_s both must keep `n . move >= (r_s - d) / 2`; added up,
 //! `n . (x_i - x_j)` stays >= r_s at the end of the tick and, being linear, in between. Both sides must

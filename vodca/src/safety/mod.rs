@@ -1,4 +1,4 @@
-//! The separation that holds by construction (safe.md, rules 5 and 6): cells that robots may not leave
+//! The separation that holds by construction (ARCHITECTURE, rules 5 and 6): cells that robots may not leave
 //! within a tick, and the last check after any solver outcome.
 
 pub mod cell;

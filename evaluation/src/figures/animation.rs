@@ -1,0 +1,217 @@
+//! A run as a moving SVG (SMIL): it plays wherever a picture is shown, a README included, without a script.
+
+use super::film::{Film, Setting};
+use super::svg::{COLOURS, escaped};
+use std::fmt::Write as _;
+use vodca::Position;
+use vodca::prediction::Prediction;
+
+/// Pixels per metre.
+const SCALE: f64 = 26.0;
+/// Free space around everything that is drawn, m.
+const MARGIN: f64 = 0.4;
+/// Seconds of the run per second of the animation.
+const SPEED: f64 = 2.0;
+/// Ticks for which the last picture stands still before the run begins again.
+const REST: usize = 8;
+/// Points that a plan is drawn through, whatever its horizon: SMIL moves paths of equally many points only.
+const PLAN_POINTS: usize = 6;
+/// Share of the run that viewers without animation show.
+const STILL: f64 = 0.4;
+const FOOT: f64 = 24.0;
+const STYLE: &str = "svg{background:#fff}text{font:12px sans-serif;fill:#16181d}.o{fill:#c9ced6}.w{stroke-opacity:.25}\
+@media(prefers-color-scheme:dark){svg{background:#14161a}text{fill:#eceef2}.o{fill:#3a3f48}}";
+
+/// Where metres lie in the picture.
+struct Frame {
+    low: Position,
+    high: Position,
+}
+
+/// Draws `film`: discs of half the separation, the way each has come, its set-point, and its plan ahead. A disc is
+/// filled while its robot has collision rows.
+pub(super) fn animation(setting: &Setting, film: &Film, title: &str) -> String {
+    let half = film.params.model.min_separation / 2.0;
+    let frame = Frame::around(film, half);
+    let seconds = (film.ticks.len() + REST) as f64 * film.params.model.sample_time / SPEED;
+    let [width, height] = [frame.x(frame.high.x) + MARGIN * SCALE, frame.y(frame.low.y) + MARGIN * SCALE];
+    let mut body = format!("<desc>{}</desc>\n", escaped(&setting.command(&film.horizon)));
+    for obstacle in &film.scenario.obstacles {
+        let radius = obstacle.radius.unwrap_or(half) * SCALE;
+        let [x, y] = frame.at(obstacle.position);
+        line(&mut body, format_args!("<circle class=\"o\" cx=\"{x:.0}\" cy=\"{y:.0}\" r=\"{radius:.1}\"/>"));
+    }
+    for robot in 0..film.scenario.robots.len() {
+        draw_robot(&mut body, film, &frame, robot, half, seconds);
+    }
+    let foot = height + FOOT - 9.0;
+    line(&mut body, format_args!("<text x=\"10\" y=\"{foot:.0}\">{}</text>", escaped(title)));
+    let bar: Vec<String> = shown(film).map(|tick| format!("{:.0}", width * tick as f64 / film.ticks.len() as f64)).collect();
+    line(
+        &mut body,
+        format_args!(
+            "<rect y=\"{:.0}\" height=\"3\" fill=\"#8a909c\">{}</rect>",
+            height + FOOT - 3.0,
+            animate("width", &bar, seconds, "linear")
+        ),
+    );
+    format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width:.0} {:.0}\" role=\"img\">\n<style>{STYLE}</style>\n\
+         {body}</svg>\n",
+        height + FOOT
+    )
+}
+
+fn draw_robot(body: &mut String, film: &Film, frame: &Frame, robot: usize, half: f64, seconds: f64) {
+    let colour = COLOURS[robot % COLOURS.len()];
+    let entry = &film.scenario.robots[robot];
+    let radius = entry.radius.unwrap_or(half) * SCALE;
+    let still = (STILL * film.ticks.len() as f64) as usize;
+    let places: Vec<[f64; 2]> = shown(film).map(|tick| frame.at(place(film, robot, tick))).collect();
+    let [x, y] = frame.at(entry.set_point);
+    line(body, format_args!("<circle class=\"w\" cx=\"{x:.0}\" cy=\"{y:.0}\" r=\"{radius:.1}\" fill=\"none\" stroke=\"{colour}\"/>"));
+    // The way so far: one path, of which a growing part is drawn.
+    let mut path = String::from("M");
+    let mut way = vec![0.0];
+    for pair in places.windows(2) {
+        let [from, to] = [pair[0], pair[1]];
+        way.push(way[way.len() - 1] + (to[0] - from[0]).hypot(to[1] - from[1]));
+    }
+    for [x, y] in &places[..=film.ticks.len()] {
+        let _ = write!(path, "{x:.1} {y:.1} "); // writing to a String cannot fail
+    }
+    let length = way[way.len() - 1];
+    let left: Vec<String> = way.iter().map(|gone| format!("{:.0}", length - gone)).collect();
+    line(
+        body,
+        format_args!(
+            "<path fill=\"none\" stroke=\"{colour}\" stroke-width=\"1.5\" stroke-opacity=\".5\" stroke-dasharray=\"{length:.0}\" \
+             stroke-dashoffset=\"{}\" d=\"{}\">{}</path>",
+            left[still],
+            path.trim_end(),
+            animate("stroke-dashoffset", &left, seconds, "linear")
+        ),
+    );
+    let plans: Vec<String> = shown(film).map(|tick| plan(film, frame, robot, tick)).collect();
+    line(
+        body,
+        format_args!(
+            "<path fill=\"none\" stroke=\"{colour}\" stroke-width=\"2\" stroke-dasharray=\"1 3\" d=\"{}\">{}</path>",
+            plans[still],
+            animate("d", &plans, seconds, "linear")
+        ),
+    );
+    let axis = |axis: usize| places.iter().map(|place| format!("{:.1}", place[axis])).collect::<Vec<_>>();
+    let (xs, ys) = (axis(0), axis(1));
+    let full: Vec<String> = shown(film).map(|tick| opacity(film, robot, tick)).collect();
+    line(
+        body,
+        format_args!(
+            "<circle cx=\"{}\" cy=\"{}\" r=\"{radius:.1}\" fill=\"{colour}\" stroke=\"{colour}\" fill-opacity=\"{}\">{}{}{}</circle>",
+            xs[still],
+            ys[still],
+            full[still],
+            animate("cx", &xs, seconds, "linear"),
+            animate("cy", &ys, seconds, "linear"),
+            animate("fill-opacity", &full, seconds, "discrete")
+        ),
+    );
+}
+
+/// The ticks that are shown one after another: all of them, then the end for a while.
+fn shown(film: &Film) -> impl Iterator<Item = usize> {
+    let end = film.ticks.len();
+    (0..end + REST).map(move |tick| tick.min(end))
+}
+
+/// Where `robot` is at the start of `tick`; after the last one, where it ended.
+fn place(film: &Film, robot: usize, tick: usize) -> Position {
+    match film.ticks.get(tick) {
+        Some(steps) => steps[robot].position,
+        None => film.ticks.last().map_or(film.scenario.robots[robot].start, |steps| steps[robot].next_position),
+    }
+}
+
+fn plan(film: &Film, frame: &Frame, robot: usize, tick: usize) -> String {
+    let last = place(film, robot, tick);
+    let points = (0..PLAN_POINTS).map(|point| match film.ticks.get(tick) {
+        Some(steps) => frame.at(along(&steps[robot].plan, point)),
+        None => frame.at(last),
+    });
+    let text: Vec<String> = points.map(|[x, y]| format!("{x:.0} {y:.0}")).collect();
+    format!("M{}", text.join(" "))
+}
+
+/// Point `point` of [`PLAN_POINTS`] that divide a plan into equally many steps, as nearly as whole steps allow.
+fn along(plan: &Prediction, point: usize) -> Position {
+    plan.state(point * plan.horizon().steps() / (PLAN_POINTS - 1))
+}
+
+fn opacity(film: &Film, robot: usize, tick: usize) -> String {
+    let rows = film.ticks.get(tick).map_or(0, |steps| steps[robot].rows);
+    if rows > 0 { ".75".into() } else { ".2".into() }
+}
+
+fn animate(attribute: &str, values: &[String], seconds: f64, mode: &str) -> String {
+    format!(
+        "<animate attributeName=\"{attribute}\" calcMode=\"{mode}\" dur=\"{seconds:.1}s\" repeatCount=\"indefinite\" \
+         values=\"{}\"/>",
+        values.join(";")
+    )
+}
+
+fn line(body: &mut String, element: std::fmt::Arguments<'_>) {
+    let _ = writeln!(body, "{element}"); // writing to a String cannot fail
+}
+
+impl Frame {
+    fn around(film: &Film, half: f64) -> Self {
+        let robots = film.scenario.robots.iter().flat_map(|robot| [robot.start, robot.set_point]);
+        let states = film.ticks.iter().flatten().map(|step| step.next_position);
+        let places = robots.chain(states).chain(film.scenario.obstacles.iter().map(|obstacle| obstacle.position));
+        let edge = Position::repeat(half + MARGIN);
+        let none = (Position::repeat(f64::INFINITY), Position::repeat(f64::NEG_INFINITY));
+        let (low, high) = places.fold(none, |(low, high), place| (low.inf(&(place - edge)), high.sup(&(place + edge))));
+        Self { low, high }
+    }
+
+    fn x(&self, x: f64) -> f64 {
+        (x - self.low.x) * SCALE
+    }
+
+    fn y(&self, y: f64) -> f64 {
+        (self.high.y - y) * SCALE
+    }
+
+    fn at(&self, place: Position) -> [f64; 2] {
+        [self.x(place.x), self.y(place.y)]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::figures::SAFE;
+
+    #[test]
+    fn every_robot_moves_from_its_start_to_its_set_point_and_the_file_stays_small() {
+        let film = SAFE.run("fixed:20").unwrap();
+        let text = animation(&SAFE, &film, "fourteen");
+        assert!(text.len() < 300_000, "{} bytes", text.len());
+        assert_eq!(text.matches("attributeName=\"cx\"").count(), 14);
+        let values = |attribute: &str| {
+            let from = text.split(&format!("attributeName=\"{attribute}\"")).nth(1).unwrap();
+            let list = from.split("values=\"").nth(1).unwrap().split('"').next().unwrap();
+            list.split(';').map(String::from).collect::<Vec<_>>()
+        };
+        let frame = Frame::around(&film, film.params.model.min_separation / 2.0);
+        let robot = &film.scenario.robots[0];
+        let (xs, ys) = (values("cx"), values("cy"));
+        assert_eq!(xs.len(), film.ticks.len() + REST);
+        assert_eq!([&xs[0], &ys[0]].map(|text| text.parse::<f64>().unwrap()), frame.at(robot.start).map(|at| (at * 10.0).round() / 10.0));
+        let end = [&xs, &ys].map(|list| list.last().unwrap().parse::<f64>().unwrap());
+        let wanted = frame.at(robot.set_point);
+        let off = (end[0] - wanted[0]).hypot(end[1] - wanted[1]) / SCALE;
+        assert!(off < film.params.episode.arrival_tolerance + 0.01, "{off} m");
+    }
+}
