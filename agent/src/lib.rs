@@ -1,6 +1,7 @@
 //! One robot of the team: predicts, detects conflicts, solves its own MPC, publishes its plan.
 pub mod baseline;
 pub mod controller;
+pub mod filling;
 pub mod golden;
 pub mod hearing;
 mod horizons;

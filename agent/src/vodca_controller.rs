@@ -83,7 +83,7 @@ impl VodcaController {
     fn look_ahead(&mut self, view: &View<'_>) -> f64 {
         let Self { params, layout, traffic, robot, .. } = self;
         let Params { model, aim, .. } = &*params;
-        let own = Walk { from: view.position, to: layout.set_points[*robot] };
+        let own = Walk { from: view.position, to: way_of(params, layout, *robot, view).aim(view.position) };
         if aim.look_ahead == 0 || (own.to - own.from).norm() < aim.fade_start {
             return 0.0;
         }
@@ -91,7 +91,7 @@ impl VodcaController {
         for (other, neighbour) in view.neighbours.iter().enumerate().filter(|(other, _)| *other != *robot) {
             if let Some((_, from)) = neighbour.present {
                 let separation = model.min_separation + layout.robot_extra[*robot] + layout.robot_extra[other];
-                traffic.add(Walk { from, to: neighbour.set_point }, separation);
+                traffic.add(Walk { from, to: layout.routes[other].aim(from) }, separation);
             }
         }
         traffic.turn(own)
@@ -101,10 +101,7 @@ impl VodcaController {
     /// in the end anywhere.
     fn way_on(&self, view: &View<'_>) -> Position {
         let Self { robot, params, layout, memory, .. } = self;
-        if !memory.is_out_of_patience(&params.vodca) {
-            return layout.set_points[*robot];
-        }
-        let on = layout.routes[*robot].aim(view.position);
+        let on = way_of(params, layout, *robot, view).aim(view.position);
         if !memory.backs_off(&params.vodca) {
             return on;
         }
@@ -250,6 +247,20 @@ impl Controller for VodcaController {
     }
 }
 
+/// Whether all that `robot` waits for have taken their set-points.
+fn is_turn(params: &Params, layout: &Layout, robot: usize, view: &View<'_>) -> bool {
+    view.neighbours.iter().enumerate().all(|(other, neighbour)| {
+        let taken = |at: Position| (at - neighbour.set_point).norm() < params.give_way.radius;
+        !layout.filling.waits(robot, other) || neighbour.present.is_some_and(|(_, at)| taken(at))
+    })
+}
+
+/// The way that `robot` follows in this tick: to its set-point, or to where it waits for its turn.
+fn way_of<'a>(params: &Params, layout: &'a Layout, robot: usize, view: &View<'_>) -> &'a Route {
+    let ways = if is_turn(params, layout, robot, view) { &layout.routes } else { &layout.outside };
+    &ways[robot]
+}
+
 /// What `robot` must keep away from in the tick of `view`: every neighbour that was heard of, then every
 /// obstacle. Asks for a tick after the first one.
 pub fn hazards<'a>(
@@ -259,15 +270,19 @@ pub fn hazards<'a>(
     memory: &ConflictMemory,
     view: &'a View<'a>,
 ) -> impl Iterator<Item = Hazard<'a>> + Clone {
-    let way = (layout.set_points[robot] - view.position).norm();
+    let turn = is_turn(params, layout, robot, view);
+    let to = if turn { layout.set_points[robot] } else { layout.filling.outside[robot] };
+    let way = (to - view.position).norm();
+    let clearance = params.give_way.clearance.min(layout.room[robot]);
     let gives_way = way < params.give_way.radius || memory.is_out_of_patience(&params.vodca);
     let owed = move |extra: f64| params.model.min_separation + layout.robot_extra[robot] + extra;
     let others = view.neighbours.iter().enumerate().filter(move |(other, _)| *other != robot);
     let neighbours = others.filter_map(move |(other, neighbour)| {
         let separation = owed(layout.robot_extra[other]);
         let wish = || wish_to_let_pass(params, way, neighbour, &layout.routes[other]);
-        if let Some(course) = gives_way.then(wish).flatten() {
-            return Some(Hazard { course, separation: separation + params.give_way.clearance });
+        let parks = turn && layout.filling.waits(other, robot);
+        if let Some(course) = (gives_way && !parks).then(wish).flatten() {
+            return Some(Hazard { course, separation: separation + clearance });
         }
         let (tick, plan) = neighbour.plan.as_ref()?;
         let age = (view.tick - 1).saturating_sub(*tick) as usize;
@@ -288,6 +303,6 @@ fn wish_to_let_pass<'a>(params: &Params, way: f64, neighbour: &Neighbour, route:
     if (neighbour.set_point - from).norm() <= way {
         return None;
     }
-    let to = if params.vodca.patience < 1.0 { route.aim(from) } else { neighbour.set_point };
+    let to = route.aim(from);
     Some(Course::Wish { from, to, stride: params.model.sample_time * params.model.max_speed })
 }
