@@ -33,9 +33,11 @@ impl Layout {
         let robot_extra: Vec<f64> = scenario.robots.iter().map(|robot| robot.extra_radius(min_separation)).collect();
         let obstacles = scenario.discs(min_separation);
         let owed: Vec<f64> = robot_extra.iter().map(|extra| min_separation + extra).collect();
-        let routes = Route::of_team(&set_points, &owed, &obstacles);
+        let places: Vec<Disc> =
+            set_points.iter().zip(&robot_extra).map(|(&centre, &extra)| Disc { centre, extra }).collect();
+        let routes = Route::of_team(&set_points, &owed, &places, &obstacles);
         let filling = Filling::new(&set_points, &robot_extra, &obstacles, min_separation);
-        let outside = Route::of_team(&filling.outside, &owed, &obstacles);
+        let outside = Route::of_team(&filling.outside, &owed, &places, &obstacles);
         let room = (0..set_points.len())
             .map(|robot| {
                 let left = |at: Position, extra: f64| (at - set_points[robot]).norm() - owed[robot] - extra;

@@ -12,6 +12,7 @@ pub mod robot;
 pub mod route;
 pub mod run;
 pub mod safety;
+pub mod standing;
 pub mod team;
 pub mod vodca;
 pub mod vodca_controller;

@@ -26,10 +26,14 @@ pub struct Robot {
 impl Robot {
     /// Robot number `robot` at its start. `seed` feeds what is random: measuring noise, ORCA's push.
     pub fn new(robot: usize, scenario: &Scenario, params: &Params, seed: u64) -> Self {
-        let layout = Layout::of(scenario, params.model.min_separation);
+        Self::among(&Layout::of(scenario, params.model.min_separation), robot, scenario, params, seed)
+    }
+
+    /// The same, with the layout that the whole team shares.
+    pub fn among(layout: &Layout, robot: usize, scenario: &Scenario, params: &Params, seed: u64) -> Self {
         let controller: Box<dyn Controller> = match params.controller.kind {
-            ControllerKind::Vodca => Box::new(VodcaController::new(robot, params, &layout)),
-            ControllerKind::Orca => Box::new(OrcaController::new(robot, params, &layout, seed)),
+            ControllerKind::Vodca => Box::new(VodcaController::new(robot, params, layout)),
+            ControllerKind::Orca => Box::new(OrcaController::new(robot, params, layout, seed)),
         };
         Self::driven_by(controller, robot, scenario, params, seed)
     }

@@ -2,6 +2,7 @@
 //! processes. Golden tests, sweeps and replays stand on it; agent processes give the same bytes.
 
 use crate::hearing::Hearing;
+use crate::layout::Layout;
 use crate::mpc::cross_check::Comparison;
 use crate::robot::Robot;
 use shared::horizon::Horizon;
@@ -21,7 +22,8 @@ pub struct Team {
 impl Team {
     /// A team at its start positions, before tick 0. `seed` feeds the disturbances.
     pub fn new(scenario: &Scenario, params: &Params, seed: u64) -> Self {
-        Self::of(Robot::new, scenario, params, seed)
+        let layout = Layout::of(scenario, params.model.min_separation);
+        Self::of(|robot, scenario, params, seed| Robot::among(&layout, robot, scenario, params, seed), scenario, params, seed)
     }
 
     /// The same team, solving every QP a second time with Clarabel (see [`Self::comparison`]).

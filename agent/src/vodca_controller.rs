@@ -6,8 +6,9 @@ use crate::mpc::cross_check::Comparison;
 use crate::mpc::ladder::Ladder;
 use crate::mpc::problem::{Plan, Problem, Row, SlackPrice, SolveError, Target};
 use crate::reference;
-use crate::route::Route;
+use crate::route::{Rest, Route};
 use crate::safety::cell::{Cell, Present};
+use crate::standing::Standing;
 use crate::safety::last_check::{TOLERANCE, is_answer, nearest_safe};
 use crate::vodca::back_off;
 use crate::vodca::memory::ConflictMemory;
@@ -34,6 +35,12 @@ pub struct VodcaController {
     previous: Option<Previous>,
     memory: ConflictMemory,
     traffic: Traffic,
+    standing: Standing,
+    rests: [Rest; 2],
+    /// Where the robot looks in this tick, m.
+    on: Position,
+    /// By robot: how this one regards it.
+    regards: Vec<Regard>,
 }
 
 /// The robot's own plan of tick k - 1.
@@ -60,6 +67,10 @@ impl VodcaController {
             previous: None,
             memory: ConflictMemory::default(),
             traffic: Traffic::with_capacity(robots, &params.aim, stride),
+            standing: Standing::with_capacity(hazards),
+            rests: [Rest::of(&layout.routes[robot]), Rest::of(&layout.outside[robot])],
+            on: layout.set_points[robot],
+            regards: Vec::with_capacity(robots),
         }
     }
 
@@ -72,7 +83,7 @@ impl VodcaController {
     fn detect(&mut self, view: &View<'_>) -> usize {
         self.rows.clear();
         let Some(previous) = &self.previous else { return 0 };
-        let hazards = hazards(&self.params, &self.layout, self.robot, &self.memory, view);
+        let hazards = hazards(&self.params, &self.layout, self.robot, view, &self.regards);
         let min_separation = self.params.model.min_separation;
         let vodca = &self.params.vodca;
         let turn = self.memory.turn(vodca);
@@ -83,7 +94,7 @@ impl VodcaController {
     fn look_ahead(&mut self, view: &View<'_>) -> f64 {
         let Self { params, layout, traffic, robot, .. } = self;
         let Params { model, aim, .. } = &*params;
-        let own = Walk { from: view.position, to: way_of(params, layout, *robot, view).aim(view.position) };
+        let own = Walk { from: view.position, to: self.on };
         if aim.look_ahead == 0 || (own.to - own.from).norm() < aim.fade_start {
             return 0.0;
         }
@@ -101,7 +112,7 @@ impl VodcaController {
     /// in the end anywhere.
     fn way_on(&self, view: &View<'_>) -> Position {
         let Self { robot, params, layout, memory, .. } = self;
-        let on = way_of(params, layout, *robot, view).aim(view.position);
+        let on = self.on;
         if !memory.backs_off(&params.vodca) {
             return on;
         }
@@ -227,6 +238,9 @@ fn bounded(axis: f64, bound: f64) -> f64 {
 impl Controller for VodcaController {
     fn tick(&mut self, view: &View<'_>) -> Decision {
         let started = Instant::now();
+        let Self { params, layout, robot, standing, memory, regards, rests, .. } = self;
+        regard_others(params, layout, *robot, memory, view, standing, regards);
+        self.on = way_on(params, layout, *robot, view, standing, rests);
         let rows = self.detect(view);
         let turn = self.look_ahead(view);
         self.memory.remember(&self.params.aim, &self.params.vodca, rows, turn);
@@ -250,15 +264,73 @@ impl Controller for VodcaController {
 /// Whether all that `robot` waits for have taken their set-points.
 fn is_turn(params: &Params, layout: &Layout, robot: usize, view: &View<'_>) -> bool {
     view.neighbours.iter().enumerate().all(|(other, neighbour)| {
-        let taken = |at: Position| (at - neighbour.set_point).norm() < params.give_way.radius;
+        let taken = |at: Position| (at - neighbour.set_point).norm() < 0.3;
         !layout.filling.waits(robot, other) || neighbour.present.is_some_and(|(_, at)| taken(at))
     })
 }
 
-/// The way that `robot` follows in this tick: to its set-point, or to where it waits for its turn.
-fn way_of<'a>(params: &Params, layout: &'a Layout, robot: usize, view: &View<'_>) -> &'a Route {
-    let ways = if is_turn(params, layout, robot, view) { &layout.routes } else { &layout.outside };
-    &ways[robot]
+/// Where `robot` looks: along its way to its set-point, or to where it waits for its turn, round the obstacles and
+/// those who stand.
+fn way_on(
+    params: &Params,
+    layout: &Layout,
+    robot: usize,
+    view: &View<'_>,
+    standing: &mut Standing,
+    [rest, rest_outside]: &mut [Rest; 2],
+) -> Position {
+    standing.look(params, layout, robot, view);
+    let (ways, rest) = if is_turn(params, layout, robot, view) {
+        (&layout.routes, rest)
+    } else {
+        (&layout.outside, rest_outside)
+    };
+    ways[robot].aim_round(view.position, standing.who, rest)
+}
+
+/// How a robot regards another one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Regard {
+    /// It keeps away from the other's plan.
+    Plan,
+    /// It keeps away from where the other wishes to walk: it lets it pass.
+    Wish,
+    /// It stays at its place, which the other walks round.
+    Stays,
+}
+
+/// How `robot` regards the others, by number.
+pub fn regard_others(
+    params: &Params,
+    layout: &Layout,
+    robot: usize,
+    memory: &ConflictMemory,
+    view: &View<'_>,
+    standing: &mut Standing,
+    regards: &mut Vec<Regard>,
+) {
+    let turn = is_turn(params, layout, robot, view);
+    let to = if turn { layout.set_points[robot] } else { layout.filling.outside[robot] };
+    let way = (to - view.position).norm();
+    let parks = turn && way < 0.5 * params.model.min_separation;
+    let gives_way = way < params.give_way.radius || memory.is_out_of_patience(&params.vodca);
+    regards.clear();
+    for (other, neighbour) in view.neighbours.iter().enumerate() {
+        let regard = match neighbour.present {
+            _ if other == robot => Regard::Plan,
+            Some((_, from)) if parks => {
+                // Only whom those who stand shut in together.
+                let seen = View { position: from, ..*view };
+                standing.look(params, layout, other, &seen);
+                if standing.shuts_in(from, neighbour.set_point) { Regard::Wish } else { Regard::Stays }
+            }
+            Some((_, from)) if gives_way && (neighbour.set_point - from).norm() > way => {
+                if turn && layout.filling.waits(other, robot) { Regard::Plan } else { Regard::Wish }
+            }
+            _ => Regard::Plan,
+        };
+        regards.push(regard);
+    }
 }
 
 /// What `robot` must keep away from in the tick of `view`: every neighbour that was heard of, then every
@@ -267,21 +339,19 @@ pub fn hazards<'a>(
     params: &'a Params,
     layout: &'a Layout,
     robot: usize,
-    memory: &ConflictMemory,
     view: &'a View<'a>,
+    regards: &'a [Regard],
 ) -> impl Iterator<Item = Hazard<'a>> + Clone {
-    let turn = is_turn(params, layout, robot, view);
-    let to = if turn { layout.set_points[robot] } else { layout.filling.outside[robot] };
-    let way = (to - view.position).norm();
-    let clearance = params.give_way.clearance.min(layout.room[robot]);
-    let gives_way = way < params.give_way.radius || memory.is_out_of_patience(&params.vodca);
+    let clearance = params.give_way.clearance.min(layout.room[robot] / 2.0);
     let owed = move |extra: f64| params.model.min_separation + layout.robot_extra[robot] + extra;
     let others = view.neighbours.iter().enumerate().filter(move |(other, _)| *other != robot);
     let neighbours = others.filter_map(move |(other, neighbour)| {
         let separation = owed(layout.robot_extra[other]);
-        let wish = || wish_to_let_pass(params, way, neighbour, &layout.routes[other]);
-        let parks = turn && layout.filling.waits(other, robot);
-        if let Some(course) = (gives_way && !parks).then(wish).flatten() {
+        let wish = || wish(params, neighbour, &layout.routes[other]);
+        if regards[other] == Regard::Stays {
+            return None;
+        }
+        if let Some(course) = (regards[other] == Regard::Wish).then(wish).flatten() {
             return Some(Hazard { course, separation: separation + clearance });
         }
         let (tick, plan) = neighbour.plan.as_ref()?;
@@ -298,11 +368,8 @@ pub fn hazards<'a>(
 /// Rule 3: a robot near its set-point, or without patience, lets those pass that still have farther to go
 /// than its own `way` (m), by keeping away from where they wish to walk. (A plan that already avoids a
 /// parked robot shows no conflict.)
-fn wish_to_let_pass<'a>(params: &Params, way: f64, neighbour: &Neighbour, route: &Route) -> Option<Course<'a>> {
+fn wish<'a>(params: &Params, neighbour: &Neighbour, route: &Route) -> Option<Course<'a>> {
     let (_, from) = neighbour.present?;
-    if (neighbour.set_point - from).norm() <= way {
-        return None;
-    }
     let to = route.aim(from);
     Some(Course::Wish { from, to, stride: params.model.sample_time * params.model.max_speed })
 }
