@@ -20,28 +20,37 @@ pub struct Filling {
 }
 
 impl Filling {
-    /// The turns of robots with `set_points` and radii `extra` beyond min_separation / 2 among `obstacles`, m.
-    pub fn new(set_points: &[Position], extra: &[f64], obstacles: &[Disc], min_separation: f64) -> Self {
+    /// The turns of robots with `set_points` and radii `extra` beyond min_separation / 2 among `obstacles`, m;
+    /// `room` is by how much each can move aside at its set-point, m.
+    pub fn new(
+        set_points: &[Position],
+        extra: &[f64],
+        room: &[f64],
+        obstacles: &[Disc],
+        min_separation: f64,
+    ) -> Self {
         let owed = |a: f64, b: f64| min_separation + a + b;
-        let layers = layers(set_points, extra, obstacles, min_separation);
-        let groups = groups(set_points, |a, b| (set_points[a] - set_points[b]).norm() < 2.0 * owed(extra[a], extra[b]));
+        let layers = layers(set_points, extra, room, obstacles, min_separation);
+        let apart = |a: usize, b: usize| (set_points[a] - set_points[b]).norm();
+        let groups =
+            groups(set_points, |a, b| apart(a, b) + room[a] + room[b] < 2.0 * owed(extra[a], extra[b]));
         let place: Vec<(usize, usize)> = groups.into_iter().zip(layers).collect();
-        let waits_for = |robot: usize| (0..place.len()).filter(|&other| waits(place[robot], place[other])).collect::<Vec<usize>>();
+        let deepest = |group: usize| {
+            place.iter().filter(|(other, _)| *other == group).map(|(_, layer)| *layer).max().unwrap_or_default()
+        };
         let outside = |robot: usize| {
-            let own = set_points[robot];
-            let before = waits_for(robot);
-            let away: Position = before
-                .iter()
-                .map(|&other| own - set_points[other])
-                .map(|apart| apart / apart.norm_squared())
-                .sum();
+            let (own, (group, layer)) = (set_points[robot], place[robot]);
+            let others = || (0..place.len()).filter(move |other| *other != robot).filter(|other| place[*other].0 == group);
+            let before = others().filter(|&other| waits(place[robot], place[other]));
+            let away: Position =
+                before.map(|other| own - set_points[other]).map(|apart| apart / apart.norm_squared()).sum();
             if away.norm() < 1e-9 {
                 return own;
             }
+            // A lane all round the group for whose turn it is; behind it, those whose turn comes first.
+            let lanes = (1 + deepest(group) - layer) as f64;
             let far = |at: Position| {
-                before.iter().all(|&other| {
-                    (at - set_points[other]).norm() >= 2.0 * owed(extra[robot], extra[other])
-                })
+                others().all(|other| (at - set_points[other]).norm() >= lanes * owed(extra[robot], extra[other]))
             };
             let free = |at: Position| {
                 obstacles.iter().all(|disc| (at - disc.centre).norm() >= owed(extra[robot], disc.extra))
@@ -71,7 +80,7 @@ fn waits((group, layer): (usize, usize), (other_group, other_layer): (usize, usi
 }
 
 /// The layer of each set-point, 1 for the open ones. Those that never become open are of the last one.
-fn layers(set_points: &[Position], extra: &[f64], obstacles: &[Disc], min_separation: f64) -> Vec<usize> {
+fn layers(set_points: &[Position], extra: &[f64], room: &[f64], obstacles: &[Disc], min_separation: f64) -> Vec<usize> {
     let mut layers = vec![0; set_points.len()];
     for layer in 1.. {
         let closed_in = |robot: usize| {
@@ -79,7 +88,7 @@ fn layers(set_points: &[Position], extra: &[f64], obstacles: &[Disc], min_separa
             let still = |other: &usize| *other != robot && layers[*other] == 0;
             let closed: Vec<Closed> = (0..set_points.len())
                 .filter(still)
-                .map(|other| (set_points[other], owed(extra[other])))
+                .map(|other| (set_points[other], owed(extra[other]) - room[other]))
                 .chain(obstacles.iter().map(|disc| (disc.centre, owed(disc.extra))))
                 .collect();
             is_closed_in(set_points[robot], &closed)

@@ -36,8 +36,6 @@ impl Layout {
         let places: Vec<Disc> =
             set_points.iter().zip(&robot_extra).map(|(&centre, &extra)| Disc { centre, extra }).collect();
         let routes = Route::of_team(&set_points, &owed, &places, &obstacles);
-        let filling = Filling::new(&set_points, &robot_extra, &obstacles, min_separation);
-        let outside = Route::of_team(&filling.outside, &owed, &places, &obstacles);
         let room = (0..set_points.len())
             .map(|robot| {
                 let left = |at: Position, extra: f64| (at - set_points[robot]).norm() - owed[robot] - extra;
@@ -46,7 +44,9 @@ impl Layout {
                 let all = others.chain(obstacles.iter().map(|disc| left(disc.centre, disc.extra)));
                 all.fold(f64::INFINITY, f64::min).max(0.0)
             })
-            .collect();
+            .collect::<Vec<f64>>();
+        let filling = Filling::new(&set_points, &robot_extra, &room, &obstacles, min_separation);
+        let outside = Route::of_team(&filling.outside, &owed, &places, &obstacles);
         Self { set_points, robot_extra, obstacles, routes, outside, filling, room }
     }
 }

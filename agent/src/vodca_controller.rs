@@ -11,6 +11,7 @@ use crate::safety::cell::{Cell, Present};
 use crate::standing::Standing;
 use crate::safety::last_check::{TOLERANCE, is_answer, nearest_safe};
 use crate::vodca::back_off;
+use crate::vodca::conflict::first_conflict;
 use crate::vodca::memory::ConflictMemory;
 use crate::vodca::rows::collision_rows;
 use crate::vodca::traffic::{Traffic, Walk};
@@ -37,6 +38,8 @@ pub struct VodcaController {
     traffic: Traffic,
     standing: Standing,
     rests: [Rest; 2],
+    /// Whether it stands in the way of a robot that it lets pass.
+    yields: bool,
     /// Where the robot looks in this tick, m.
     on: Position,
     /// By robot: how this one regards it.
@@ -68,6 +71,7 @@ impl VodcaController {
             memory: ConflictMemory::default(),
             traffic: Traffic::with_capacity(robots, &params.aim, stride),
             standing: Standing::with_capacity(hazards),
+            yields: false,
             rests: [Rest::of(&layout.routes[robot]), Rest::of(&layout.outside[robot])],
             on: layout.set_points[robot],
             regards: Vec::with_capacity(robots),
@@ -87,6 +91,10 @@ impl VodcaController {
         let min_separation = self.params.model.min_separation;
         let vodca = &self.params.vodca;
         let turn = self.memory.turn(vodca);
+        let last = previous.prediction.horizon().steps();
+        self.yields = hazards.clone().any(|hazard| {
+            matches!(hazard.course, Course::Wish { .. }) && first_conflict(&previous.prediction, &hazard, 1, last).is_some()
+        });
         collision_rows(vodca, min_separation, turn, &previous.prediction, view.horizon, hazards, &mut self.rows)
     }
 
@@ -112,7 +120,7 @@ impl VodcaController {
     /// in the end anywhere.
     fn way_on(&self, view: &View<'_>) -> Position {
         let Self { robot, params, layout, memory, .. } = self;
-        let on = self.on;
+        let on = if self.yields { view.position } else { self.on };
         if !memory.backs_off(&params.vodca) {
             return on;
         }
