@@ -4,6 +4,7 @@
 //! robot that has arrived closes that side, it stays in the pocket for ever. The shortest way leads round.
 
 use shared::Position;
+use crate::vodca::rows::turned;
 use shared::metrics::Disc;
 use shared::scenario::MAX_ROBOTS;
 use std::f64::consts::{PI, TAU};
@@ -122,23 +123,83 @@ pub struct Route {
     /// set-points between each corner and them.
     entry: Position,
     sees_entry: Vec<Option<Standing>>,
-    /// Nobody stands: by corner, what is left from there to the set-point, m; infinite where no way leads on.
-    left: Vec<f64>,
+    /// The rest of the way while nobody stands.
+    alone: Rest,
 }
 
 /// What is left of a robot's way from every corner while certain robots stand.
 #[derive(Clone, Debug, Default)]
 pub struct Rest {
     standing: Standing,
+    /// By corner: what is left from there, m; infinite where no way leads on.
     left: Vec<f64>,
+    /// By corner: where the way leads next.
+    next: Vec<Next>,
     open: Vec<usize>,
+}
+
+/// Where a way leads from a corner.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Next {
+    /// Straight to its end.
+    #[default]
+    End,
+    /// To the entry, then to its end.
+    Entry,
+    /// To another corner.
+    Corner(usize),
+}
+
+/// Bends of a way that a plan can reach.
+const BENDS: usize = 6;
+
+/// A way as a chain of straight legs.
+#[derive(Clone, Copy, Debug)]
+pub struct Path {
+    points: [Position; BENDS],
+    count: usize,
+    /// Its whole length, m.
+    pub length: f64,
+}
+
+impl Path {
+    /// A way without bends.
+    pub fn straight(from: Position, to: Position) -> Self {
+        Self { points: [to; BENDS], count: 1, length: (to - from).norm() }
+    }
+
+    /// The ends of its legs, m. A way with more bends than are kept ends at one.
+    pub fn points(&self) -> &[Position] {
+        &self.points[..self.count]
+    }
+
+    /// The point as far off as the way is long, in the direction in which it begins.
+    pub fn ahead(&self, from: Position) -> Position {
+        let first = self.points[0] - from;
+        if self.count == 1 { self.points[0] } else { from + first * (self.length / first.norm().max(REACHED)) }
+    }
+
+    /// The same way, turned about `from` by `angle` to the left, rad.
+    pub fn turned(mut self, from: Position, angle: f64) -> Self {
+        if angle != 0.0 {
+            self.points.iter_mut().for_each(|point| *point = from + turned(*point - from, angle));
+        }
+        self
+    }
+
+    fn push(&mut self, point: Position) {
+        if self.count < BENDS {
+            self.points[self.count] = point;
+            self.count += 1;
+        }
+    }
 }
 
 impl Rest {
     /// Room for `route`.
     pub fn of(route: &Route) -> Self {
-        let corners = route.left.len();
-        Self { standing: Standing::default(), left: route.left.clone(), open: Vec::with_capacity(corners) }
+        let corners = route.alone.left.len();
+        Self { open: Vec::with_capacity(corners), ..route.alone.clone() }
     }
 }
 
@@ -168,26 +229,28 @@ impl Route {
         };
         let entry = entry(closed, places, robot, set_point);
         let (sees_end, sees_entry) = (sees(set_point), sees(entry));
-        let mut route = Self { set_point, corners: corners.clone(), sees_end, entry, sees_entry, left: Vec::new() };
-        let mut rest = Rest { left: vec![0.0; at.len()], ..Rest::default() };
+        let mut route = Self { set_point, corners: corners.clone(), sees_end, entry, sees_entry, alone: Rest::default() };
+        let mut rest = Rest { left: vec![0.0; at.len()], next: vec![Next::End; at.len()], ..Rest::default() };
         route.walk_back(Standing::default(), &mut rest);
-        route.left = rest.left;
+        route.alone = rest;
         route
     }
 
     /// Shortest ways from every corner while `standing` are in the way (Dijkstra 1959).
     fn walk_back(&self, standing: Standing, rest: &mut Rest) {
         let Corners { at, fixed, seen, .. } = &*self.corners;
-        let Rest { left, open, .. } = rest;
+        let Rest { left, next, open, .. } = rest;
         let used = if standing.is_empty() { *fixed } else { at.len() };
         let clear = |between: &Option<Standing>| between.is_some_and(|between| !between.meets(&standing));
         let last = (self.set_point - self.entry).norm();
-        for (corner, left) in left.iter_mut().enumerate() {
+        for (corner, (left, next)) in left.iter_mut().zip(next.iter_mut()).enumerate() {
+            *next = Next::End;
             *left = if corner >= used {
                 f64::INFINITY
             } else if clear(&self.sees_end[corner]) {
                 (self.set_point - at[corner]).norm()
             } else if clear(&self.sees_entry[corner]) {
+                *next = Next::Entry;
                 (self.entry - at[corner]).norm() + last
             } else {
                 f64::INFINITY
@@ -202,7 +265,10 @@ impl Route {
             }
             for (other, between) in &seen[corner] {
                 if *other < used && !between.meets(&standing) {
-                    left[*other] = left[*other].min(left[corner] + (at[*other] - at[corner]).norm());
+                    let way = left[corner] + (at[*other] - at[corner]).norm();
+                    if way < left[*other] {
+                        (left[*other], next[*other]) = (way, Next::Corner(corner));
+                    }
                 }
             }
         }
@@ -214,58 +280,87 @@ impl Route {
         self.set_point
     }
 
-    /// Where a robot at `from` (m) has to look: the set-point itself where nothing is between, else the next
-    /// corner of the shortest way, as far off as that way is long. The set-point where no way leads out.
+    /// Where a robot at `from` (m) has to look while nobody stands: the set-point itself where nothing is between,
+    /// else the next corner of the shortest way, as far off as that way is long. The set-point where no way leads out.
     pub fn aim(&self, from: Position) -> Position {
+        self.path(from).ahead(from)
+    }
+
+    /// The shortest way from `from` while nobody stands.
+    pub fn path(&self, from: Position) -> Path {
+        let straight = Path::straight(from, self.set_point);
         if is_free(&self.corners.closed, from, self.set_point) {
-            return self.set_point;
+            return straight;
         }
-        self.aim_past(from, Standing::default(), &self.left).unwrap_or(self.set_point)
+        self.path_past(from, Standing::default(), &self.alone).unwrap_or(straight)
     }
 
     /// The same round those of `standing` who are in the way; as if they were not there where no way leads
     /// round them.
-    pub fn aim_round(&self, from: Position, standing: Standing, rest: &mut Rest) -> Position {
+    pub fn path_round(&self, from: Position, standing: Standing, rest: &mut Rest) -> Path {
         let Corners { closed, places, .. } = &*self.corners;
-        let on = self.aim(from);
-        // The corner that it looks at, where it is not the end.
-        if standing.is_empty() || !between(places, from, on).meets(&standing) {
-            return on;
+        let alone = self.path(from);
+        let is_clear = |from: Position, to: Position| standing.is_empty() || !between(places, from, to).meets(&standing);
+        if standing.is_empty() || self.is_clear(from, &alone, standing) {
+            return alone;
         }
-        let straight = is_free(closed, from, self.entry) && !between(places, from, self.entry).meets(&standing);
+        let mut best: Option<Path> = None;
+        if is_free(closed, from, self.entry) && is_clear(from, self.entry) {
+            let mut through = Path::straight(from, self.entry);
+            through.push(self.set_point);
+            through.length += (self.set_point - self.entry).norm();
+            best = Some(through);
+        }
         if rest.standing != standing {
             self.walk_back(standing, rest);
         }
-        let (mut aim, mut shortest) = (None, f64::INFINITY);
-        if straight && is_free(closed, self.entry, self.set_point) {
-            let near = (self.entry - from).norm();
-            shortest = near + (self.set_point - self.entry).norm();
-            aim = (near > 0.05).then(|| from + (self.entry - from) * (shortest / near));
-        }
-        let round = self.aim_past(from, standing, &rest.left);
-        match round {
-            Some(round) if (round - from).norm() < shortest => round,
-            _ => aim.unwrap_or(on),
-        }
+        let round = self.path_past(from, standing, rest);
+        best = match (best, round) {
+            (Some(through), Some(round)) if round.length < through.length => Some(round),
+            (through, round) => through.or(round),
+        };
+        best.unwrap_or(alone)
     }
 
-    fn aim_past(&self, from: Position, standing: Standing, left: &[f64]) -> Option<Position> {
+    /// Whether nobody of `standing` is in the way of `path`, which keeps clear of the obstacles.
+    fn is_clear(&self, from: Position, path: &Path, standing: Standing) -> bool {
+        let starts = std::iter::once(&from).chain(path.points());
+        starts.zip(path.points()).all(|(from, to)| !between(&self.corners.places, *from, *to).meets(&standing))
+    }
+
+    fn path_past(&self, from: Position, standing: Standing, rest: &Rest) -> Option<Path> {
         let Corners { closed, places, at, .. } = &*self.corners;
-        let mut aim = None;
-        let mut shortest = f64::INFINITY;
-        for (corner, left) in at.iter().zip(left) {
-            let near = (corner - from).norm();
+        let (mut first, mut shortest) = (None, f64::INFINITY);
+        for (corner, (place, left)) in at.iter().zip(&rest.left).enumerate() {
+            let near = (place - from).norm();
             let way = near + left;
             let free = || {
-                is_free(closed, from, *corner)
-                    && (standing.is_empty() || !between(places, from, *corner).meets(&standing))
+                is_free(closed, from, *place)
+                    && (standing.is_empty() || !between(places, from, *place).meets(&standing))
             };
             if near > REACHED && way < shortest && free() {
-                shortest = way;
-                aim = Some(from + (corner - from) * (way / near));
+                (first, shortest) = (Some(corner), way);
             }
         }
-        aim
+        let mut corner = first?;
+        let mut path = Path { length: shortest, ..Path::straight(from, at[corner]) };
+        loop {
+            match rest.next[corner] {
+                Next::Corner(next) => {
+                    path.push(at[next]);
+                    corner = next;
+                }
+                Next::Entry => {
+                    path.push(self.entry);
+                    path.push(self.set_point);
+                    return Some(path);
+                }
+                Next::End => {
+                    path.push(self.set_point);
+                    return Some(path);
+                }
+            }
+        }
     }
 }
 

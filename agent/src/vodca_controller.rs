@@ -6,7 +6,7 @@ use crate::mpc::cross_check::Comparison;
 use crate::mpc::ladder::Ladder;
 use crate::mpc::problem::{Plan, Problem, Row, SlackPrice, SolveError, Target};
 use crate::reference;
-use crate::route::{Rest, Route};
+use crate::route::{Path, Rest, Route};
 use crate::safety::cell::{Cell, Present};
 use crate::standing::Standing;
 use crate::safety::last_check::{TOLERANCE, is_answer, nearest_safe};
@@ -40,7 +40,9 @@ pub struct VodcaController {
     rests: [Rest; 2],
     /// Whether it stands in the way of a robot that it lets pass.
     yields: bool,
-    /// Where the robot looks in this tick, m.
+    /// The robot's way in this tick.
+    way: Path,
+    /// Where that makes it look, m.
     on: Position,
     /// By robot: how this one regards it.
     regards: Vec<Regard>,
@@ -73,6 +75,7 @@ impl VodcaController {
             standing: Standing::with_capacity(hazards),
             yields: false,
             rests: [Rest::of(&layout.routes[robot]), Rest::of(&layout.outside[robot])],
+            way: Path::straight(layout.set_points[robot], layout.set_points[robot]),
             on: layout.set_points[robot],
             regards: Vec::with_capacity(robots),
         }
@@ -116,27 +119,25 @@ impl VodcaController {
         traffic.turn(own)
     }
 
-    /// Where to go on: to the set-point; without patience where the shortest way round the obstacles leads;
-    /// in the end anywhere.
-    fn way_on(&self, view: &View<'_>) -> Position {
-        let Self { robot, params, layout, memory, .. } = self;
-        let on = if self.yields { view.position } else { self.on };
-        if !memory.backs_off(&params.vodca) {
-            return on;
-        }
-        back_off::aim(*robot, view.tick, view.position, on, 2.0 * params.model.min_separation)
-    }
-
     /// Rule 1: the reference, aimed by rule 4.
     fn aim(&mut self, view: &View<'_>) {
-        let set_point = self.way_on(view);
-        match self.params.mpc.reference {
-            Reference::SetPoint => reference::set_point(&mut self.target, set_point, view.horizon),
+        let Params { model, mpc, aim, vodca, .. } = &self.params;
+        let (h, speed) = (model.sample_time, model.max_speed);
+        match mpc.reference {
+            Reference::SetPoint => {
+                reference::set_point(&mut self.target, self.layout.set_points[self.robot], view.horizon);
+            }
             Reference::Straight => {
-                let seen = reference::aim(&self.params.aim, self.memory.aim, view.position, set_point);
-                let model = &self.params.model;
-                let (h, speed) = (model.sample_time, model.max_speed);
-                reference::straight(&mut self.target, view.position, seen, view.horizon, h, speed);
+                let mut way = self.way;
+                if self.memory.backs_off(vodca) {
+                    let to = self.on;
+                    let off = back_off::aim(self.robot, view.tick, view.position, to, 2.0 * model.min_separation);
+                    if off != to {
+                        way = Path::straight(view.position, off);
+                    }
+                }
+                let way = way.turned(view.position, -self.memory.aim * aim.fade(way.length));
+                reference::along(&mut self.target, view.position, way.points(), view.horizon, h, speed);
             }
         }
     }
@@ -248,7 +249,8 @@ impl Controller for VodcaController {
         let started = Instant::now();
         let Self { params, layout, robot, standing, memory, regards, rests, .. } = self;
         regard_others(params, layout, *robot, memory, view, standing, regards);
-        self.on = way_on(params, layout, *robot, view, standing, rests);
+        self.way = way_on(params, layout, *robot, view, standing, rests);
+        self.on = self.way.ahead(view.position);
         let rows = self.detect(view);
         let turn = self.look_ahead(view);
         self.memory.remember(&self.params.aim, &self.params.vodca, rows, turn);
@@ -286,14 +288,14 @@ fn way_on(
     view: &View<'_>,
     standing: &mut Standing,
     [rest, rest_outside]: &mut [Rest; 2],
-) -> Position {
+) -> Path {
     standing.look(params, layout, robot, view);
     let (ways, rest) = if is_turn(params, layout, robot, view) {
         (&layout.routes, rest)
     } else {
         (&layout.outside, rest_outside)
     };
-    ways[robot].aim_round(view.position, standing.who, rest)
+    ways[robot].path_round(view.position, standing.who, rest)
 }
 
 /// How a robot regards another one.
@@ -380,4 +382,11 @@ fn wish<'a>(params: &Params, neighbour: &Neighbour, route: &Route) -> Option<Cou
     let (_, from) = neighbour.present?;
     let to = route.aim(from);
     Some(Course::Wish { from, to, stride: params.model.sample_time * params.model.max_speed })
+}
+
+/// Temporary.
+pub fn x(index: usize) -> f64 {
+    static X: std::sync::OnceLock<Vec<f64>> = std::sync::OnceLock::new();
+    let all = X.get_or_init(|| std::env::var("X").unwrap_or_default().split(',').map(|s| s.parse().unwrap_or(0.0)).collect());
+    all.get(index).copied().unwrap_or(0.0)
 }
