@@ -20,20 +20,18 @@ pub struct Filling {
 }
 
 impl Filling {
-    /// The turns of robots with `set_points` and radii `extra` beyond min_separation / 2 among `obstacles`, m;
-    /// `room` is by how much each can move aside at its set-point, m.
+    /// The turns of robots with `set_points` and radii `extra` beyond min_separation / 2 among `obstacles`, m.
     pub fn new(
         set_points: &[Position],
         extra: &[f64],
-        room: &[f64],
         obstacles: &[Disc],
         min_separation: f64,
     ) -> Self {
         let owed = |a: f64, b: f64| min_separation + a + b;
-        let layers = layers(set_points, extra, room, obstacles, min_separation);
+        let layers = layers(set_points, extra, obstacles, min_separation);
         let apart = |a: usize, b: usize| (set_points[a] - set_points[b]).norm();
         let groups =
-            groups(set_points, |a, b| apart(a, b) + room[a] + room[b] < 2.0 * owed(extra[a], extra[b]));
+            groups(set_points, |a, b| apart(a, b) < 2.0 * owed(extra[a], extra[b]));
         let place: Vec<(usize, usize)> = groups.into_iter().zip(layers).collect();
         let deepest = |group: usize| {
             place.iter().filter(|(other, _)| *other == group).map(|(_, layer)| *layer).max().unwrap_or_default()
@@ -80,7 +78,7 @@ fn waits((group, layer): (usize, usize), (other_group, other_layer): (usize, usi
 }
 
 /// The layer of each set-point, 1 for the open ones. Those that never become open are of the last one.
-fn layers(set_points: &[Position], extra: &[f64], room: &[f64], obstacles: &[Disc], min_separation: f64) -> Vec<usize> {
+fn layers(set_points: &[Position], extra: &[f64], obstacles: &[Disc], min_separation: f64) -> Vec<usize> {
     let mut layers = vec![0; set_points.len()];
     for layer in 1.. {
         let closed_in = |robot: usize| {
@@ -88,7 +86,7 @@ fn layers(set_points: &[Position], extra: &[f64], room: &[f64], obstacles: &[Dis
             let still = |other: &usize| *other != robot && layers[*other] == 0;
             let closed: Vec<Closed> = (0..set_points.len())
                 .filter(still)
-                .map(|other| (set_points[other], owed(extra[other]) - room[other]))
+                .map(|other| (set_points[other], owed(extra[other])))
                 .chain(obstacles.iter().map(|disc| (disc.centre, owed(disc.extra))))
                 .collect();
             is_closed_in(set_points[robot], &closed)

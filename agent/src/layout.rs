@@ -44,10 +44,15 @@ impl Layout {
                 let all = others.chain(obstacles.iter().map(|disc| left(disc.centre, disc.extra)));
                 all.fold(f64::INFINITY, f64::min).max(0.0)
             })
-            .map(|room| if crate::vodca_controller::x(2) == 0.0 { 0.0 } else { room })
             .collect::<Vec<f64>>();
-        let filling = Filling::new(&set_points, &robot_extra, &room, &obstacles, min_separation);
+        let filling = Filling::new(&set_points, &robot_extra, &obstacles, min_separation);
         let outside = Route::of_team(&filling.outside, &owed, &places, &obstacles);
         Self { set_points, robot_extra, obstacles, routes, outside, filling, room }
+    }
+
+    /// Whether `robot` cannot make room at its set-point: two that stand side by side, each with a third of a
+    /// separation to spare, let one through.
+    pub fn is_tight(&self, robot: usize, min_separation: f64) -> bool {
+        self.room[robot] < min_separation / 3.0 - 1e-6
     }
 }

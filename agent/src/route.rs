@@ -49,6 +49,16 @@ impl Standing {
         self.0[robot / 64] & 1 << (robot % 64) != 0
     }
 
+    /// Of these, the ones of `other`.
+    pub fn among(&self, other: &Self) -> Self {
+        Self(std::array::from_fn(|word| self.0[word] & other.0[word]))
+    }
+
+    /// How many there are.
+    pub fn count(&self) -> u32 {
+        self.0.iter().map(|word| word.count_ones()).sum()
+    }
+
     fn meets(&self, other: &Self) -> bool {
         self.0.iter().zip(&other.0).any(|(a, b)| a & b != 0)
     }
@@ -87,6 +97,16 @@ impl Corners {
         let mut at: Vec<Position> = closed.iter().flat_map(round).filter(open).collect();
         let fixed = at.len();
         at.extend(places.iter().flat_map(round).filter(open));
+        // Gates between two discs that leave hardly more than a robot needs: no corner fits in between.
+        for (index, a) in places.iter().enumerate() {
+            for b in places[..index].iter().chain(&closed) {
+                let wide = (a.centre - b.centre).norm() / (a.radius + b.radius);
+                if (1.0..1.2).contains(&wide) {
+                    let share = a.radius / (a.radius + b.radius);
+                    at.extend(Some(a.centre + (b.centre - a.centre) * share).filter(open));
+                }
+            }
+        }
         let mut seen: Vec<Vec<(usize, Standing)>> = vec![Vec::new(); at.len()];
         for a in 0..at.len() {
             for b in 0..a {
@@ -297,9 +317,37 @@ impl Route {
 
     /// The same round those of `standing` who are in the way; as if they were not there where no way leads
     /// round them.
-    pub fn path_round(&self, from: Position, standing: Standing, rest: &mut Rest) -> Path {
-        let Corners { closed, places, .. } = &*self.corners;
+    ///
+    /// `tight` are those of them who cannot make room. The others are walked round only where that is no more
+    /// than `price` (m) longer for each of them that would have to.
+    pub fn path_round(&self, from: Position, standing: Standing, tight: Standing, price: f64, rests: &mut [Rest; 2]) -> Path {
+        let [rest, rest_tight] = rests;
         let alone = self.path(from);
+        if standing.is_empty() || self.is_clear(from, &alone, standing) {
+            return alone;
+        }
+        let round = self.shortest(from, alone, standing, rest);
+        if tight == standing {
+            return round;
+        }
+        let through = self.shortest(from, alone, tight, rest_tight);
+        let moved = self.met(from, &through).among(&standing).count();
+        if round.length <= through.length + price * f64::from(moved) { round } else { through }
+    }
+
+    /// The set-points that a path leads over.
+    fn met(&self, from: Position, path: &Path) -> Standing {
+        let starts = std::iter::once(&from).chain(path.points());
+        let mut met = Standing::default();
+        for (from, to) in starts.zip(path.points()) {
+            let between = between(&self.corners.places, *from, *to);
+            met = Standing(std::array::from_fn(|word| met.0[word] | between.0[word]));
+        }
+        met
+    }
+
+    fn shortest(&self, from: Position, alone: Path, standing: Standing, rest: &mut Rest) -> Path {
+        let Corners { closed, places, .. } = &*self.corners;
         let is_clear = |from: Position, to: Position| standing.is_empty() || !between(places, from, to).meets(&standing);
         if standing.is_empty() || self.is_clear(from, &alone, standing) {
             return alone;
@@ -319,7 +367,7 @@ impl Route {
             (Some(through), Some(round)) if round.length < through.length => Some(round),
             (through, round) => through.or(round),
         };
-        best.unwrap_or(alone)
+        best.unwrap_or(Path { length: f64::INFINITY, ..alone })
     }
 
     /// Whether nobody of `standing` is in the way of `path`, which keeps clear of the obstacles.

@@ -17,6 +17,8 @@ pub struct Standing {
     robots: usize,
     /// The robots that stand, by number.
     pub who: route::Standing,
+    /// Those of them who cannot make room.
+    pub tight: route::Standing,
     /// Chains of overlapping discs: see [`Self::shuts_in`].
     first: Vec<usize>,
     odd: Vec<bool>,
@@ -29,6 +31,7 @@ impl Standing {
             closed: Vec::with_capacity(discs),
             robots: 0,
             who: route::Standing::default(),
+            tight: route::Standing::default(),
             first: Vec::with_capacity(discs),
             odd: Vec::with_capacity(discs),
         }
@@ -38,6 +41,7 @@ impl Standing {
     pub fn look(&mut self, params: &Params, layout: &Layout, walker: usize, view: &View<'_>) {
         self.closed.clear();
         self.who = route::Standing::default();
+        self.tight = route::Standing::default();
         let owed = |extra: f64| params.model.min_separation + layout.robot_extra[walker] + extra;
         for (other, neighbour) in view.neighbours.iter().enumerate().filter(|(other, _)| *other != walker) {
             let Some((_, at)) = neighbour.present else { continue };
@@ -45,6 +49,9 @@ impl Standing {
             if (at - centre).norm() < 0.5 * params.model.min_separation {
                 self.closed.push(Closed { centre, radius: owed(layout.robot_extra[other]) });
                 self.who.add(other);
+                if layout.is_tight(other, params.model.min_separation) {
+                    self.tight.add(other);
+                }
             }
         }
         self.robots = self.closed.len();

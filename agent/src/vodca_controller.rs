@@ -6,12 +6,11 @@ use crate::mpc::cross_check::Comparison;
 use crate::mpc::ladder::Ladder;
 use crate::mpc::problem::{Plan, Problem, Row, SlackPrice, SolveError, Target};
 use crate::reference;
-use crate::route::{Path, Rest, Route};
+use crate::route::{Path, Rest};
 use crate::safety::cell::{Cell, Present};
 use crate::standing::Standing;
 use crate::safety::last_check::{TOLERANCE, is_answer, nearest_safe};
 use crate::vodca::back_off;
-use crate::vodca::conflict::first_conflict;
 use crate::vodca::memory::ConflictMemory;
 use crate::vodca::rows::collision_rows;
 use crate::vodca::traffic::{Traffic, Walk};
@@ -37,9 +36,7 @@ pub struct VodcaController {
     memory: ConflictMemory,
     traffic: Traffic,
     standing: Standing,
-    rests: [Rest; 2],
-    /// Whether it stands in the way of a robot that it lets pass.
-    yields: bool,
+    rests: [[Rest; 2]; 2],
     /// The robot's way in this tick.
     way: Path,
     /// Where that makes it look, m.
@@ -73,8 +70,7 @@ impl VodcaController {
             memory: ConflictMemory::default(),
             traffic: Traffic::with_capacity(robots, &params.aim, stride),
             standing: Standing::with_capacity(hazards),
-            yields: false,
-            rests: [Rest::of(&layout.routes[robot]), Rest::of(&layout.outside[robot])],
+            rests: [&layout.routes[robot], &layout.outside[robot]].map(|route| [Rest::of(route), Rest::of(route)]),
             way: Path::straight(layout.set_points[robot], layout.set_points[robot]),
             on: layout.set_points[robot],
             regards: Vec::with_capacity(robots),
@@ -94,10 +90,6 @@ impl VodcaController {
         let min_separation = self.params.model.min_separation;
         let vodca = &self.params.vodca;
         let turn = self.memory.turn(vodca);
-        let last = previous.prediction.horizon().steps();
-        self.yields = hazards.clone().any(|hazard| {
-            matches!(hazard.course, Course::Wish { .. }) && first_conflict(&previous.prediction, &hazard, 1, last).is_some()
-        });
         collision_rows(vodca, min_separation, turn, &previous.prediction, view.horizon, hazards, &mut self.rows)
     }
 
@@ -113,7 +105,7 @@ impl VodcaController {
         for (other, neighbour) in view.neighbours.iter().enumerate().filter(|(other, _)| *other != *robot) {
             if let Some((_, from)) = neighbour.present {
                 let separation = model.min_separation + layout.robot_extra[*robot] + layout.robot_extra[other];
-                traffic.add(Walk { from, to: layout.routes[other].aim(from) }, separation);
+                traffic.add(Walk { from, to: neighbour.toward }, separation);
             }
         }
         traffic.turn(own)
@@ -235,7 +227,8 @@ impl VodcaController {
             debug_assert!(is_answer(inputs[0] * model.sample_time, &self.cell, 2.0 * TOLERANCE));
         }
         let set_point = self.layout.set_points[self.robot];
-        (Prediction::roll_out(view.position, set_point, model.sample_time, inputs), shielded)
+        let plan = Prediction::roll_out(view.position, set_point, model.sample_time, inputs);
+        (plan.looking(self.on), shielded)
     }
 }
 
@@ -287,7 +280,7 @@ fn way_on(
     robot: usize,
     view: &View<'_>,
     standing: &mut Standing,
-    [rest, rest_outside]: &mut [Rest; 2],
+    [rest, rest_outside]: &mut [[Rest; 2]; 2],
 ) -> Path {
     standing.look(params, layout, robot, view);
     let (ways, rest) = if is_turn(params, layout, robot, view) {
@@ -295,7 +288,8 @@ fn way_on(
     } else {
         (&layout.outside, rest_outside)
     };
-    ways[robot].path_round(view.position, standing.who, rest)
+    let price = if x(1) == 0.0 { 2.0 * params.model.min_separation } else { x(1) };
+    ways[robot].path_round(view.position, standing.who, standing.tight, price, rest)
 }
 
 /// How a robot regards another one.
@@ -322,7 +316,7 @@ pub fn regard_others(
     let turn = is_turn(params, layout, robot, view);
     let to = if turn { layout.set_points[robot] } else { layout.filling.outside[robot] };
     let way = (to - view.position).norm();
-    let parks = turn && way < 0.5 * params.model.min_separation;
+    let parks = turn && way < 0.5 * params.model.min_separation && layout.is_tight(robot, params.model.min_separation);
     let gives_way = way < params.give_way.radius || memory.is_out_of_patience(&params.vodca);
     regards.clear();
     for (other, neighbour) in view.neighbours.iter().enumerate() {
@@ -357,7 +351,7 @@ pub fn hazards<'a>(
     let others = view.neighbours.iter().enumerate().filter(move |(other, _)| *other != robot);
     let neighbours = others.filter_map(move |(other, neighbour)| {
         let separation = owed(layout.robot_extra[other]);
-        let wish = || wish(params, neighbour, &layout.routes[other]);
+        let wish = || wish(params, neighbour);
         if regards[other] == Regard::Stays {
             return None;
         }
@@ -378,10 +372,9 @@ pub fn hazards<'a>(
 /// Rule 3: a robot near its set-point, or without patience, lets those pass that still have farther to go
 /// than its own `way` (m), by keeping away from where they wish to walk. (A plan that already avoids a
 /// parked robot shows no conflict.)
-fn wish<'a>(params: &Params, neighbour: &Neighbour, route: &Route) -> Option<Course<'a>> {
+fn wish<'a>(params: &Params, neighbour: &Neighbour) -> Option<Course<'a>> {
     let (_, from) = neighbour.present?;
-    let to = route.aim(from);
-    Some(Course::Wish { from, to, stride: params.model.sample_time * params.model.max_speed })
+    Some(Course::Wish { from, to: neighbour.toward, stride: params.model.sample_time * params.model.max_speed })
 }
 
 /// Temporary.

@@ -29,6 +29,7 @@ pub(super) fn rows(
         plan: Some((tick - 1, last.plan.clone())),
         present: Some((tick, step.position)),
         set_point: last.plan.set_point,
+        toward: last.plan.toward,
     };
     let neighbours: Vec<Neighbour> = now.iter().zip(before).map(heard).collect();
     let view = View { tick, horizon: now[robot].horizon, position: now[robot].position, neighbours: &neighbours };
