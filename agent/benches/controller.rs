@@ -7,10 +7,10 @@ use agent::controller::{Controller, View};
 use agent::hearing::Hearing;
 use agent::layout::Layout;
 use agent::reference;
+use agent::right_of_way::Regard;
 use agent::safety::cell::{Cell, Present};
 use agent::safety::last_check::nearest_safe;
 use agent::team::Team;
-use agent::vodca::memory::ConflictMemory;
 use agent::vodca::rows::collision_rows;
 use agent::vodca_controller::{VodcaController, hazards};
 use criterion::{Criterion, criterion_group, criterion_main};
@@ -79,12 +79,12 @@ fn parts(criterion: &mut Criterion) {
         let moment = Moment::new(Profile::Safe, steps);
         let (params, view) = (&moment.params, moment.view());
         let model = &params.model;
-        let memory = ConflictMemory::default();
+        let regards = vec![Regard::Plan; view.neighbours.len()];
         let mut rows = Vec::with_capacity(64);
         criterion.bench_function(&format!("conflicts and rows, 13 neighbours, N = {steps}"), |bencher| {
             bencher.iter(|| {
                 rows.clear();
-                let hazards = hazards(params, &moment.layout, moment.robot, &memory, black_box(&view));
+                let hazards = hazards(params, &moment.layout, moment.robot, black_box(&view), &regards);
                 let (previous, horizon) = (&moment.previous, moment.horizon);
                 collision_rows(&params.vodca, model.min_separation, 0.35, previous, horizon, hazards, &mut rows)
             })

@@ -45,7 +45,7 @@ impl Layout {
                 all.fold(f64::INFINITY, f64::min).max(0.0)
             })
             .collect::<Vec<f64>>();
-        let filling = Filling::new(&set_points, &robot_extra, &obstacles, min_separation);
+        let filling = Filling::new(&places, &obstacles, min_separation);
         let outside = Route::of_team(&filling.outside, &owed, &places, &obstacles);
         Self { set_points, robot_extra, obstacles, routes, outside, filling, room }
     }

@@ -1,5 +1,6 @@
 //! One robot of the team: predicts, detects conflicts, solves its own MPC, publishes its plan.
 pub mod baseline;
+pub mod chains;
 pub mod controller;
 pub mod filling;
 pub mod golden;
@@ -8,6 +9,7 @@ mod horizons;
 pub mod layout;
 pub mod mpc;
 pub mod reference;
+pub mod right_of_way;
 pub mod robot;
 pub mod route;
 pub mod run;

@@ -40,7 +40,14 @@ pub fn straight(target: &mut Target, from: Position, to: Position, horizon: Hori
 }
 
 /// The same along the legs of a way, `points` (m): the largest axis at full speed all along.
-pub fn along(target: &mut Target, from: Position, points: &[Position], horizon: Horizon, sample_time: f64, max_speed: f64) {
+pub fn along(
+    target: &mut Target,
+    from: Position,
+    points: &[Position],
+    horizon: Horizon,
+    sample_time: f64,
+    max_speed: f64,
+) {
     target.kind = TargetKind::Feasible;
     let (mut here, mut leg) = (from, 0);
     for l in 0..horizon.steps() {

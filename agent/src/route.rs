@@ -3,8 +3,8 @@
 //! A plan sees an obstacle only along its horizon and slides past on one side. Where another obstacle or a
 //! robot that has arrived closes that side, it stays in the pocket for ever. The shortest way leads round.
 
-use shared::Position;
 use crate::vodca::rows::turned;
+use shared::Position;
 use shared::metrics::Disc;
 use shared::scenario::MAX_ROBOTS;
 use std::f64::consts::{PI, TAU};
@@ -199,6 +199,19 @@ impl Path {
         if self.count == 1 { self.points[0] } else { from + first * (self.length / first.norm().max(REACHED)) }
     }
 
+    /// The point that is `distance` (m) along the way from `from`.
+    pub fn after(&self, mut from: Position, mut distance: f64) -> Position {
+        for &to in self.points() {
+            let leg = (to - from).norm();
+            if leg > distance {
+                return from + (to - from) * (distance / leg);
+            }
+            distance -= leg;
+            from = to;
+        }
+        from
+    }
+
     /// The same way, turned about `from` by `angle` to the left, rad.
     pub fn turned(mut self, from: Position, angle: f64) -> Self {
         if angle != 0.0 {
@@ -243,13 +256,12 @@ impl Route {
     fn new(robot: usize, set_point: Position, corners: Arc<Corners>) -> Self {
         let Corners { closed, places, at, .. } = &*corners;
         let sees = |to: Position| {
-            at.iter()
-                .map(|from| is_free(closed, *from, to).then(|| between_but(places, robot, *from, to)))
-                .collect()
+            at.iter().map(|from| is_free(closed, *from, to).then(|| between_but(places, robot, *from, to))).collect()
         };
         let entry = entry(closed, places, robot, set_point);
         let (sees_end, sees_entry) = (sees(set_point), sees(entry));
-        let mut route = Self { set_point, corners: corners.clone(), sees_end, entry, sees_entry, alone: Rest::default() };
+        let mut route =
+            Self { set_point, corners: corners.clone(), sees_end, entry, sees_entry, alone: Rest::default() };
         let mut rest = Rest { left: vec![0.0; at.len()], next: vec![Next::End; at.len()], ..Rest::default() };
         route.walk_back(Standing::default(), &mut rest);
         route.alone = rest;
@@ -320,7 +332,14 @@ impl Route {
     ///
     /// `tight` are those of them who cannot make room. The others are walked round only where that is no more
     /// than `price` (m) longer for each of them that would have to.
-    pub fn path_round(&self, from: Position, standing: Standing, tight: Standing, price: f64, rests: &mut [Rest; 2]) -> Path {
+    pub fn path_round(
+        &self,
+        from: Position,
+        standing: Standing,
+        tight: Standing,
+        price: f64,
+        rests: &mut [Rest; 2],
+    ) -> Path {
         let [rest, rest_tight] = rests;
         let alone = self.path(from);
         if standing.is_empty() || self.is_clear(from, &alone, standing) {
@@ -348,7 +367,8 @@ impl Route {
 
     fn shortest(&self, from: Position, alone: Path, standing: Standing, rest: &mut Rest) -> Path {
         let Corners { closed, places, .. } = &*self.corners;
-        let is_clear = |from: Position, to: Position| standing.is_empty() || !between(places, from, to).meets(&standing);
+        let is_clear =
+            |from: Position, to: Position| standing.is_empty() || !between(places, from, to).meets(&standing);
         if standing.is_empty() || self.is_clear(from, &alone, standing) {
             return alone;
         }
@@ -443,9 +463,10 @@ fn entry(closed: &[Closed], places: &[Closed], robot: usize, set_point: Position
         let (sin, cos) = (TAU * direction as f64 / DIRECTIONS as f64).sin_cos();
         set_point + Position::new(cos, sin) * reach
     };
-    let best = (0..DIRECTIONS).map(at).map(|at| (room(at), at)).fold((f64::NEG_INFINITY, set_point), |best, next| {
-        if next.0 > best.0 { next } else { best }
-    });
+    let best = (0..DIRECTIONS)
+        .map(at)
+        .map(|at| (room(at), at))
+        .fold((f64::NEG_INFINITY, set_point), |best, next| if next.0 > best.0 { next } else { best });
     best.1
 }
 
@@ -473,10 +494,14 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
+    fn place((x, y): (f64, f64)) -> Disc {
+        Disc { centre: Position::new(x, y), extra: 0.0 }
+    }
+
     fn route(set_point: (f64, f64), obstacles: &[(f64, f64)]) -> Route {
         let discs: Vec<Disc> =
             obstacles.iter().map(|(x, y)| Disc { centre: Position::new(*x, *y), extra: 0.0 }).collect();
-        Route::of_team(&[Position::new(set_point.0, set_point.1)], &[1.5], &discs).remove(0)
+        Route::of_team(&[Position::new(set_point.0, set_point.1)], &[1.5], &[place(set_point)], &discs).remove(0)
     }
 
     /// Walks along the aim in small steps: (arrived, length of the way, least distance to an obstacle).
@@ -529,7 +554,7 @@ mod tests {
     fn robots_of_other_sizes_have_ways_of_their_own() {
         let discs = [Disc { centre: Position::new(5.0, 1.6), extra: 0.0 }];
         let goal = Position::new(10.0, 0.0);
-        let routes = Route::of_team(&[goal; 3], &[1.5, 1.5, 2.0], &discs);
+        let routes = Route::of_team(&[goal; 3], &[1.5, 1.5, 2.0], &[place((10.0, 0.0)); 3], &discs);
         assert_eq!(routes[1].aim(Position::zeros()), goal);
         assert!(routes[2].aim(Position::zeros()).y < 0.0);
         assert!(Arc::ptr_eq(&routes[0].corners, &routes[1].corners));

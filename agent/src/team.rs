@@ -23,7 +23,12 @@ impl Team {
     /// A team at its start positions, before tick 0. `seed` feeds the disturbances.
     pub fn new(scenario: &Scenario, params: &Params, seed: u64) -> Self {
         let layout = Layout::of(scenario, params.model.min_separation);
-        Self::of(|robot, scenario, params, seed| Robot::among(&layout, robot, scenario, params, seed), scenario, params, seed)
+        Self::of(
+            |robot, scenario, params, seed| Robot::among(&layout, robot, scenario, params, seed),
+            scenario,
+            params,
+            seed,
+        )
     }
 
     /// The same team, solving every QP a second time with Clarabel (see [`Self::comparison`]).

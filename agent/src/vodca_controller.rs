@@ -6,10 +6,11 @@ use crate::mpc::cross_check::Comparison;
 use crate::mpc::ladder::Ladder;
 use crate::mpc::problem::{Plan, Problem, Row, SlackPrice, SolveError, Target};
 use crate::reference;
+use crate::right_of_way::{Regard, regard_others, way_on};
 use crate::route::{Path, Rest};
 use crate::safety::cell::{Cell, Present};
-use crate::standing::Standing;
 use crate::safety::last_check::{TOLERANCE, is_answer, nearest_safe};
+use crate::standing::Standing;
 use crate::vodca::back_off;
 use crate::vodca::memory::ConflictMemory;
 use crate::vodca::rows::collision_rows;
@@ -119,7 +120,7 @@ impl VodcaController {
             Reference::SetPoint => {
                 reference::set_point(&mut self.target, self.layout.set_points[self.robot], view.horizon);
             }
-            Reference::Straight => {
+            Reference::Straight | Reference::Route => {
                 let mut way = self.way;
                 if self.memory.backs_off(vodca) {
                     let to = self.on;
@@ -264,79 +265,6 @@ impl Controller for VodcaController {
     }
 }
 
-/// Whether all that `robot` waits for have taken their set-points.
-fn is_turn(params: &Params, layout: &Layout, robot: usize, view: &View<'_>) -> bool {
-    view.neighbours.iter().enumerate().all(|(other, neighbour)| {
-        let taken = |at: Position| (at - neighbour.set_point).norm() < 0.3;
-        !layout.filling.waits(robot, other) || neighbour.present.is_some_and(|(_, at)| taken(at))
-    })
-}
-
-/// Where `robot` looks: along its way to its set-point, or to where it waits for its turn, round the obstacles and
-/// those who stand.
-fn way_on(
-    params: &Params,
-    layout: &Layout,
-    robot: usize,
-    view: &View<'_>,
-    standing: &mut Standing,
-    [rest, rest_outside]: &mut [[Rest; 2]; 2],
-) -> Path {
-    standing.look(params, layout, robot, view);
-    let (ways, rest) = if is_turn(params, layout, robot, view) {
-        (&layout.routes, rest)
-    } else {
-        (&layout.outside, rest_outside)
-    };
-    let price = if x(1) == 0.0 { 2.0 * params.model.min_separation } else { x(1) };
-    ways[robot].path_round(view.position, standing.who, standing.tight, price, rest)
-}
-
-/// How a robot regards another one.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Regard {
-    /// It keeps away from the other's plan.
-    Plan,
-    /// It keeps away from where the other wishes to walk: it lets it pass.
-    Wish,
-    /// It stays at its place, which the other walks round.
-    Stays,
-}
-
-/// How `robot` regards the others, by number.
-pub fn regard_others(
-    params: &Params,
-    layout: &Layout,
-    robot: usize,
-    memory: &ConflictMemory,
-    view: &View<'_>,
-    standing: &mut Standing,
-    regards: &mut Vec<Regard>,
-) {
-    let turn = is_turn(params, layout, robot, view);
-    let to = if turn { layout.set_points[robot] } else { layout.filling.outside[robot] };
-    let way = (to - view.position).norm();
-    let parks = turn && way < 0.5 * params.model.min_separation && layout.is_tight(robot, params.model.min_separation);
-    let gives_way = way < params.give_way.radius || memory.is_out_of_patience(&params.vodca);
-    regards.clear();
-    for (other, neighbour) in view.neighbours.iter().enumerate() {
-        let regard = match neighbour.present {
-            _ if other == robot => Regard::Plan,
-            Some((_, from)) if parks => {
-                // Only whom those who stand shut in together.
-                let seen = View { position: from, ..*view };
-                standing.look(params, layout, other, &seen);
-                if standing.shuts_in(from, neighbour.set_point) { Regard::Wish } else { Regard::Stays }
-            }
-            Some((_, from)) if gives_way && (neighbour.set_point - from).norm() > way => {
-                if turn && layout.filling.waits(other, robot) { Regard::Plan } else { Regard::Wish }
-            }
-            _ => Regard::Plan,
-        };
-        regards.push(regard);
-    }
-}
-
 /// What `robot` must keep away from in the tick of `view`: every neighbour that was heard of, then every
 /// obstacle. Asks for a tick after the first one.
 pub fn hazards<'a>(
@@ -346,7 +274,7 @@ pub fn hazards<'a>(
     view: &'a View<'a>,
     regards: &'a [Regard],
 ) -> impl Iterator<Item = Hazard<'a>> + Clone {
-    let clearance = params.give_way.clearance.min(layout.room[robot] / 2.0);
+    let clearance = params.give_way.clearance;
     let owed = move |extra: f64| params.model.min_separation + layout.robot_extra[robot] + extra;
     let others = view.neighbours.iter().enumerate().filter(move |(other, _)| *other != robot);
     let neighbours = others.filter_map(move |(other, neighbour)| {
@@ -375,11 +303,4 @@ pub fn hazards<'a>(
 fn wish<'a>(params: &Params, neighbour: &Neighbour) -> Option<Course<'a>> {
     let (_, from) = neighbour.present?;
     Some(Course::Wish { from, to: neighbour.toward, stride: params.model.sample_time * params.model.max_speed })
-}
-
-/// Temporary.
-pub fn x(index: usize) -> f64 {
-    static X: std::sync::OnceLock<Vec<f64>> = std::sync::OnceLock::new();
-    let all = X.get_or_init(|| std::env::var("X").unwrap_or_default().split(',').map(|s| s.parse().unwrap_or(0.0)).collect());
-    all.get(index).copied().unwrap_or(0.0)
 }

@@ -3,6 +3,8 @@
 use agent::controller::{Neighbour, View};
 use agent::layout::Layout;
 use agent::mpc::problem::Row;
+use agent::right_of_way::regard_others;
+use agent::standing::Standing;
 use agent::vodca::memory::ConflictMemory;
 use agent::vodca::rows::collision_rows;
 use agent::vodca_controller::hazards;
@@ -33,7 +35,9 @@ pub(super) fn rows(
     };
     let neighbours: Vec<Neighbour> = now.iter().zip(before).map(heard).collect();
     let view = View { tick, horizon: now[robot].horizon, position: now[robot].position, neighbours: &neighbours };
-    let hazards = hazards(params, layout, robot, memory, &view);
+    let (mut standing, mut regards) = (Standing::with_capacity(0), Vec::new());
+    regard_others(params, layout, robot, memory, &view, &mut standing, &mut regards);
+    let hazards = hazards(params, layout, robot, &view, &regards);
     let turn = memory.turn(&params.vodca);
     let min_separation = params.model.min_separation;
     collision_rows(&params.vodca, min_separation, turn, &before[robot].plan, view.horizon, hazards, &mut rows);

@@ -17,9 +17,8 @@ use tight::{MIXED, PARK, PERMUTE, TIGHT_RING};
 use walls::{CORRIDOR, DOOR, FOREST, POCKET, ROOMS};
 
 /// The forms of all generators, for messages.
-pub(super) const FORMS: &[&str] = &[
-    RING, BOX, EXCHANGE, SEGREGATE, PARK, TIGHT_RING, PERMUTE, MIXED, DOOR, POCKET, CORRIDOR, FOREST, ROOMS,
-];
+pub(super) const FORMS: &[&str] =
+    &[RING, BOX, EXCHANGE, SEGREGATE, PARK, TIGHT_RING, PERMUTE, MIXED, DOOR, POCKET, CORRIDOR, FOREST, ROOMS];
 const RING: &str = "ring:N";
 const BOX: &str = "box:N:OBSTACLES:SEED";
 const EXCHANGE: &str = "exchange:N:SEED";

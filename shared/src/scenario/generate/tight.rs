@@ -77,8 +77,7 @@ pub(super) fn mixed(robots: usize, seed: u64) -> Result<Scenario, String> {
     let needed = |a: usize, b: usize| radii[a] + radii[b] + 0.5;
     let starts = apart(robots, needed, &mut generator, |generator| Some(offset(half, generator)))?;
     let set_points = apart(robots, needed, &mut generator, |generator| Some(offset(half, generator)))?;
-    let mut made =
-        scenario(format!("mixed:{robots}:{seed}"), seed, MAX_TICKS, starts.into_iter().zip(set_points), []);
+    let mut made = scenario(format!("mixed:{robots}:{seed}"), seed, MAX_TICKS, starts.into_iter().zip(set_points), []);
     for (robot, radius) in made.robots.iter_mut().zip(radii) {
         robot.radius = Some((radius * 1e9).round() / 1e9);
     }
@@ -94,9 +93,10 @@ pub(super) fn apart(
 ) -> Result<Vec<Position>, String> {
     let mut placed: Vec<Position> = Vec::with_capacity(count);
     for index in 0..count {
-        let point = (0..ATTEMPTS).filter_map(|_| draw(generator)).map(|point| CENTRE + point).find(|point| {
-            placed.iter().enumerate().all(|(other, at)| (point - at).norm() >= needed(index, other))
-        });
+        let point = (0..ATTEMPTS)
+            .filter_map(|_| draw(generator))
+            .map(|point| CENTRE + point)
+            .find(|point| placed.iter().enumerate().all(|(other, at)| (point - at).norm() >= needed(index, other)));
         placed.push(point.ok_or("there is no room for so many; use fewer robots or another seed")?);
     }
     Ok(placed)

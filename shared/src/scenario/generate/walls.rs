@@ -69,9 +69,12 @@ pub(super) fn pocket(robots: usize, seed: u64) -> Result<Scenario, String> {
         CENTRE + grid(robot, columns, SPACING + 0.2) + slack
     });
     let starts: Vec<Position> = starts.collect();
-    let behind = apart(robots, |_, _| SPACING, &mut generator, |generator| {
-        inside(generator).map(|point| point * 1.6 + Position::new(2.6 * half + 6.0, 0.0))
-    })?;
+    let behind = apart(
+        robots,
+        |_, _| SPACING,
+        &mut generator,
+        |generator| inside(generator).map(|point| point * 1.6 + Position::new(2.6 * half + 6.0, 0.0)),
+    )?;
     let order = shuffled(robots, &mut generator);
     let pairs: Vec<(Position, Position)> = starts.into_iter().zip(order.into_iter().map(|i| behind[i])).collect();
     let (back, arm) = (half + 1.5 + RADIUS, half + 1.5 + RADIUS);
@@ -95,9 +98,8 @@ pub(super) fn corridor(robots: usize, seed: u64) -> Result<Scenario, String> {
     starts.extend(places(right, away)?);
     set_points.extend(places(right, -away)?);
     let y = WIDTH / 2.0 + RADIUS;
-    let obstacles = [y, -y]
-        .into_iter()
-        .flat_map(|y| wall(Position::new(-HALF_LENGTH, y), Position::new(HALF_LENGTH, y)));
+    let obstacles =
+        [y, -y].into_iter().flat_map(|y| wall(Position::new(-HALF_LENGTH, y), Position::new(HALF_LENGTH, y)));
     let name = format!("corridor:{robots}:{seed}");
     Ok(scenario(name, seed, MAX_TICKS, starts.into_iter().zip(set_points), obstacles))
 }
@@ -127,7 +129,8 @@ pub(super) fn rooms(robots: usize, seed: u64) -> Result<Scenario, String> {
     // By robot, so that every room holds about as many at the start and at the end.
     let into = |room_of: usize| {
         let corner = |sign: f64| if sign > 0.0 { (2.5, reach) } else { (-reach, -2.5) };
-        let (x, y) = (corner(if room_of & 1 == 0 { 1.0 } else { -1.0 }), corner(if room_of & 2 == 0 { 1.0 } else { -1.0 }));
+        let (x, y) =
+            (corner(if room_of & 1 == 0 { 1.0 } else { -1.0 }), corner(if room_of & 2 == 0 { 1.0 } else { -1.0 }));
         rectangle((x.0, y.0), (x.1, y.1))
     };
     let mut starts: Vec<Vec<Position>> = Vec::new();
