@@ -73,6 +73,8 @@ pub struct Plan {
     pub horizon: u32,
     /// x_i^d as the robot aims at it, m.
     pub set_point: [f64; 2],
+    /// Where it looks on its way there, m.
+    pub toward: [f64; 2],
     /// x^_i[0..=N|k], m; the rest is meaningless.
     pub states: [[f64; 2]; MAX_HORIZON + 1],
 }
@@ -222,6 +224,7 @@ impl Plan {
         robot: 0,
         horizon: 0,
         set_point: [0.0; 2],
+        toward: [0.0; 2],
         states: [[0.0; 2]; MAX_HORIZON + 1],
     };
 
@@ -230,6 +233,7 @@ impl Plan {
         let mut plan = Plan { epoch, tick, robot: robot as u32, ..Plan::EMPTY };
         plan.horizon = prediction.horizon().steps() as u32;
         plan.set_point = prediction.set_point.into();
+        plan.toward = prediction.toward.into();
         for (to, from) in plan.states.iter_mut().zip(prediction.states()) {
             *to = (*from).into();
         }
@@ -240,7 +244,8 @@ impl Plan {
     pub fn prediction(&self) -> Option<Prediction> {
         let horizon = Horizon::new(u64::from(self.horizon)).ok()?;
         let states = |step: usize| Position::from(self.states[step]);
-        Some(Prediction::from_fn(horizon, states, Position::from(self.set_point)))
+        let prediction = Prediction::from_fn(horizon, states, Position::from(self.set_point));
+        Some(prediction.looking(Position::from(self.toward)))
     }
 }
 
@@ -375,7 +380,7 @@ mod tests {
         assert_eq!(size_of::<Announcement>(), 3 * 8 + 2 * 4 + MAX_ROBOTS);
         assert_eq!(size_of::<Observation>(), 4 * 8 + MAX_ROBOTS * 16);
         assert_eq!(size_of::<PolicyAnswer>(), 5 * 8 + 2 * 4 + 32 + 5 * MAX_ROBOTS);
-        assert_eq!(size_of::<Plan>(), 3 * 8 + 2 * 4 + 16 + 50 * 16);
+        assert_eq!(size_of::<Plan>(), 3 * 8 + 2 * 4 + 2 * 16 + 50 * 16);
         assert_eq!(size_of::<Report>(), size_of::<Plan>() + 8 + 80 + 3 * 8 + 6 * 8 + 8);
     }
 }

@@ -8,7 +8,6 @@ use std::hint::black_box;
 use std::sync::Arc;
 use std::time::Duration;
 use vodca::Position;
-use vodca::conflict::memory::ConflictMemory;
 use vodca::conflict::rows::collision_rows;
 use vodca::controller::{Controller, View};
 use vodca::hearing::Hearing;
@@ -17,6 +16,7 @@ use vodca::layout::Layout;
 use vodca::params::{Params, Profile};
 use vodca::prediction::Prediction;
 use vodca::reference;
+use vodca::right_of_way::Regard;
 use vodca::safety::cell::{Cell, Present};
 use vodca::safety::last_check::nearest_safe;
 use vodca::scenario::{Scenario, set_up};
@@ -81,12 +81,12 @@ fn parts(criterion: &mut Criterion) {
         let moment = Moment::new(Profile::Safe, steps);
         let (params, view) = (&moment.params, moment.view());
         let model = &params.model;
-        let memory = ConflictMemory::default();
+        let regards = vec![Regard::Plan; view.neighbours.len()];
         let mut rows = Vec::with_capacity(64);
         criterion.bench_function(&format!("conflicts and rows, 13 neighbours, N = {steps}"), |bencher| {
             bencher.iter(|| {
                 rows.clear();
-                let hazards = hazards(params, &moment.layout, moment.robot, &memory, black_box(&view));
+                let hazards = hazards(params, &moment.layout, moment.robot, black_box(&view), &regards);
                 let (previous, horizon) = (&moment.previous, moment.horizon);
                 collision_rows(&params.vodca, model.min_separation, 0.35, previous, horizon, hazards, &mut rows)
             })

@@ -17,12 +17,14 @@ pub struct Neighbour {
     pub present: Option<(u64, Position)>,
     /// Where it wants to go.
     pub set_point: Position,
+    /// Where it looks on its way there ([`Prediction::toward`]).
+    pub toward: Position,
 }
 
 impl Neighbour {
     /// What everybody knows of everybody before the first tick: the start and the set-point.
     pub fn at_start(start: Position, set_point: Position) -> Self {
-        Self { plan: None, present: Some((0, start)), set_point }
+        Self { plan: None, present: Some((0, start)), set_point, toward: set_point }
     }
 }
 

@@ -9,6 +9,8 @@ use crate::controller::{Neighbour, View};
 use crate::layout::Layout;
 use crate::mpc::problem::Row;
 use crate::params::{ControllerKind, Params};
+use crate::right_of_way::regard_others;
+use crate::standing::Standing;
 use crate::step::Step;
 use crate::vodca_controller::hazards;
 use std::sync::Arc;
@@ -68,12 +70,15 @@ impl Explainer {
             plan: Some((tick - 1, last.plan.clone())),
             present: Some((*tick, step.position)),
             set_point: last.plan.set_point,
+            toward: last.plan.toward,
         };
         let neighbours: Vec<Neighbour> = now.iter().zip(before).map(heard).collect();
         let Step { horizon, position, .. } = now[robot];
         let view = View { tick: *tick, horizon, position, neighbours: &neighbours };
         let memory = &memories[robot];
-        let hazards = hazards(params, layout, robot, memory, &view);
+        let (mut standing, mut regards) = (Standing::with_capacity(0), Vec::new());
+        regard_others(params, layout, robot, memory, &view, &mut standing, &mut regards);
+        let hazards = hazards(params, layout, robot, &view, &regards);
         let (turn, min_separation) = (memory.turn(&params.vodca), params.model.min_separation);
         let mut rows = Vec::new();
         collision_rows(&params.vodca, min_separation, turn, &before[robot].plan, horizon, hazards, &mut rows);

@@ -44,6 +44,7 @@ impl Hearing {
             let neighbour = &mut self.neighbours[sender];
             neighbour.present = Some((tick + 1, plan.state(1)));
             neighbour.set_point = plan.set_point;
+            neighbour.toward = plan.toward;
         }
         let news = !lost && !self.is_lost(plan_loss, tick, sender, 1);
         if plan_delay == 0 {

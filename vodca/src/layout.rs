@@ -1,6 +1,7 @@
 //! What every robot knows for the whole run.
 
 use crate::Position;
+use crate::filling::Filling;
 use crate::metrics::Disc;
 use crate::route::Route;
 use crate::scenario::Scenario;
@@ -16,6 +17,13 @@ pub struct Layout {
     pub obstacles: Vec<Disc>,
     /// Ways round the obstacles by robot number.
     pub routes: Vec<Route>,
+    /// Ways to where a robot waits for its turn, by robot number.
+    pub outside: Vec<Route>,
+    /// Whose turn comes before whose.
+    pub filling: Filling,
+    /// By robot: how much more than the separation owed its set-point leaves to the nearest other set-point or
+    /// obstacle, m.
+    pub room: Vec<f64>,
 }
 
 impl Layout {
@@ -25,7 +33,26 @@ impl Layout {
         let robot_extra: Vec<f64> = scenario.robots.iter().map(|robot| robot.extra_radius(min_separation)).collect();
         let obstacles = scenario.discs(min_separation);
         let owed: Vec<f64> = robot_extra.iter().map(|extra| min_separation + extra).collect();
-        let routes = Route::of_team(&set_points, &owed, &obstacles);
-        Self { set_points, robot_extra, obstacles, routes }
+        let places: Vec<Disc> =
+            set_points.iter().zip(&robot_extra).map(|(&centre, &extra)| Disc { centre, extra }).collect();
+        let routes = Route::of_team(&set_points, &owed, &places, &obstacles);
+        let room = (0..set_points.len())
+            .map(|robot| {
+                let left = |at: Position, extra: f64| (at - set_points[robot]).norm() - owed[robot] - extra;
+                let others = (0..set_points.len()).filter(|&other| other != robot);
+                let others = others.map(|other| left(set_points[other], robot_extra[other]));
+                let all = others.chain(obstacles.iter().map(|disc| left(disc.centre, disc.extra)));
+                all.fold(f64::INFINITY, f64::min).max(0.0)
+            })
+            .collect::<Vec<f64>>();
+        let filling = Filling::new(&places, &obstacles, min_separation);
+        let outside = Route::of_team(&filling.outside, &owed, &places, &obstacles);
+        Self { set_points, robot_extra, obstacles, routes, outside, filling, room }
+    }
+
+    /// Whether `robot` cannot make room at its set-point: two that stand side by side, each with a third of a
+    /// separation to spare, let one through.
+    pub fn is_tight(&self, robot: usize, min_separation: f64) -> bool {
+        self.room[robot] < min_separation / 3.0 - 1e-6
     }
 }

@@ -2,9 +2,11 @@
 
 pub mod baseline;
 pub mod body;
+pub mod chains;
 pub mod conflict;
 pub mod controller;
 pub mod explain;
+pub mod filling;
 pub mod hearing;
 pub mod horizon;
 pub mod horizon_source;
@@ -16,11 +18,13 @@ pub mod play;
 pub mod prediction;
 pub mod random;
 pub mod reference;
+pub mod right_of_way;
 pub mod robot;
 pub mod route;
 pub mod safety;
 pub mod scenario;
 pub mod separation;
+pub mod standing;
 pub mod step;
 pub mod suggest;
 pub mod team;

@@ -13,6 +13,8 @@ pub struct Prediction {
     states: [Position; MAX_HORIZON + 1],
     /// Where the robot wants to go; neighbours need it to give way (ARCHITECTURE, rule 3).
     pub set_point: Position,
+    /// Where it looks on its way there, as far off as that way is long; its set-point where nothing is between.
+    pub toward: Position,
 }
 
 impl Prediction {
@@ -24,7 +26,7 @@ impl Prediction {
         for (l, input) in inputs.iter().take(horizon.steps()).enumerate() {
             states[l + 1] = states[l] + input * sample_time;
         }
-        Self { horizon, states, set_point }
+        Self { horizon, states, set_point, toward: set_point }
     }
 
     /// A plan from its own states x^[0..=N]; `states` holds 2..=50 points.
@@ -35,13 +37,19 @@ impl Prediction {
         for (to, from) in all.iter_mut().zip(states) {
             *to = *from;
         }
-        Self { horizon, states: all, set_point }
+        Self { horizon, states: all, set_point, toward: set_point }
     }
 
     /// A plan of `horizon` steps whose `x^[l]` is `state(l)`, l = 0..=N.
     pub fn from_fn(horizon: Horizon, state: impl Fn(usize) -> Position, set_point: Position) -> Self {
         let last = horizon.steps();
-        Self { horizon, states: std::array::from_fn(|step| state(step.min(last))), set_point }
+        Self { horizon, states: std::array::from_fn(|step| state(step.min(last))), set_point, toward: set_point }
+    }
+
+    /// The same plan of a robot that looks `toward` there (m) on its way.
+    pub fn looking(mut self, toward: Position) -> Self {
+        self.toward = toward;
+        self
     }
 
     /// N of this plan.

@@ -39,6 +39,34 @@ pub fn straight(target: &mut Target, from: Position, to: Position, horizon: Hori
     }
 }
 
+/// The same along the legs of a way, `points` (m): the largest axis at full speed all along.
+pub fn along(
+    target: &mut Target,
+    from: Position,
+    points: &[Position],
+    horizon: Horizon,
+    sample_time: f64,
+    max_speed: f64,
+) {
+    target.kind = TargetKind::Feasible;
+    let (mut here, mut leg) = (from, 0);
+    for l in 0..horizon.steps() {
+        let before = here;
+        let mut reach = max_speed * sample_time;
+        while let Some(&to) = points.get(leg) {
+            let length = (to - here).amax();
+            here = toward(here, to, reach);
+            if length > reach {
+                break;
+            }
+            reach -= length;
+            leg += 1;
+        }
+        target.states[l] = here;
+        target.inputs[l] = (here - before) / sample_time;
+    }
+}
+
 /// The set-point seen turned to the right: g' = p + R(-a)(g - p) with a = `turn` (phi s, rad) times
 /// [`Aim::fade`].
 pub fn aim(aim: &Aim, turn: f64, position: Position, set_point: Position) -> Position {

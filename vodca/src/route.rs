@@ -4,7 +4,9 @@
 //! robot that has arrived closes that side, it stays in the pocket for ever. The shortest way leads round.
 
 use crate::Position;
+use crate::conflict::rows::turned;
 use crate::metrics::Disc;
+use crate::scenario::MAX_ROBOTS;
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
@@ -20,26 +22,69 @@ const REACHED: f64 = 1e-6;
 
 /// A disc that the centre of a robot must not enter.
 #[derive(Clone, Copy, Debug)]
-struct Closed {
-    centre: Position,
-    radius: f64,
+pub struct Closed {
+    /// Its centre, m.
+    pub centre: Position,
+    /// Its radius, m.
+    pub radius: f64,
 }
 
-/// The corners round a set of obstacles that robots of one size can reach, and who sees whom.
+/// Robots by number that stand at their set-points.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Standing([u64; MAX_ROBOTS.div_ceil(64)]);
+
+impl Standing {
+    /// Adds `robot`.
+    pub fn add(&mut self, robot: usize) {
+        self.0[robot / 64] |= 1 << (robot % 64);
+    }
+
+    /// Whether nobody stands.
+    pub fn is_empty(&self) -> bool {
+        *self == Self::default()
+    }
+
+    /// Whether `robot` stands.
+    pub fn has(&self, robot: usize) -> bool {
+        self.0[robot / 64] & 1 << (robot % 64) != 0
+    }
+
+    /// Of these, the ones of `other`.
+    pub fn among(&self, other: &Self) -> Self {
+        Self(std::array::from_fn(|word| self.0[word] & other.0[word]))
+    }
+
+    /// How many there are.
+    pub fn count(&self) -> u32 {
+        self.0.iter().map(|word| word.count_ones()).sum()
+    }
+
+    fn meets(&self, other: &Self) -> bool {
+        self.0.iter().zip(&other.0).any(|(a, b)| a & b != 0)
+    }
+}
+
+/// The corners round a set of obstacles and of set-points that robots of one size can reach, and who sees whom.
 #[derive(Debug)]
 struct Corners {
     closed: Vec<Closed>,
+    /// The set-points by robot: closed while somebody stands there.
+    places: Vec<Closed>,
     at: Vec<Position>,
-    /// By corner: the other corners in a straight line from it.
-    seen: Vec<Vec<usize>>,
+    /// How many of them, the first ones, are round obstacles.
+    fixed: usize,
+    /// By corner: the other corners in a straight line from it, with the set-points in between.
+    seen: Vec<Vec<(usize, Standing)>>,
 }
 
 impl Corners {
-    /// The corners round `obstacles`; `separation` is what is owed to a disc of radius min_separation / 2, m.
-    fn new(obstacles: &[Disc], separation: f64) -> Self {
-        let closed: Vec<Closed> =
-            obstacles.iter().map(|disc| Closed { centre: disc.centre, radius: separation + disc.extra }).collect();
-        let corners = (TOGETHER / closed.len().max(1)).clamp(CORNERS.0, CORNERS.1);
+    /// The corners round `obstacles` and `places`, the set-points with their robots' radii beyond
+    /// min_separation / 2; `separation` is what is owed to a disc of radius min_separation / 2, m.
+    fn new(obstacles: &[Disc], places: &[Disc], separation: f64) -> Self {
+        let close = |disc: &Disc| Closed { centre: disc.centre, radius: separation + disc.extra };
+        let closed: Vec<Closed> = obstacles.iter().map(close).collect();
+        let places: Vec<Closed> = places.iter().map(close).collect();
+        let corners = (TOGETHER / (closed.len() + places.len()).max(1)).clamp(CORNERS.0, CORNERS.1);
         let out = 1.0 / (PI / corners as f64).cos();
         let round = |disc: &Closed| {
             let (centre, radius) = (disc.centre, disc.radius * out);
@@ -48,11 +93,43 @@ impl Corners {
                 centre + Position::new(cos, sin) * radius
             })
         };
-        let at: Vec<Position> = closed.iter().flat_map(round).filter(|corner| is_open(&closed, *corner)).collect();
-        let sees = |from: usize, to: usize| from != to && is_free(&closed, at[from], at[to]);
-        let seen = (0..at.len()).map(|from| (0..at.len()).filter(|to| sees(from, *to)).collect()).collect();
-        Self { closed, at, seen }
+        let open = |corner: &Position| is_open(&closed, *corner);
+        let mut at: Vec<Position> = closed.iter().flat_map(round).filter(open).collect();
+        let fixed = at.len();
+        at.extend(places.iter().flat_map(round).filter(open));
+        // Gates between two discs that leave hardly more than a robot needs: no corner fits in between.
+        for (index, a) in places.iter().enumerate() {
+            for b in places[..index].iter().chain(&closed) {
+                let wide = (a.centre - b.centre).norm() / (a.radius + b.radius);
+                if (1.0..1.2).contains(&wide) {
+                    let share = a.radius / (a.radius + b.radius);
+                    at.extend(Some(a.centre + (b.centre - a.centre) * share).filter(open));
+                }
+            }
+        }
+        let mut seen: Vec<Vec<(usize, Standing)>> = vec![Vec::new(); at.len()];
+        for a in 0..at.len() {
+            for b in 0..a {
+                if is_free(&closed, at[a], at[b]) {
+                    let between = between(&places, at[a], at[b]);
+                    seen[a].push((b, between));
+                    seen[b].push((a, between));
+                }
+            }
+        }
+        Self { closed, places, at, fixed, seen }
     }
+}
+
+/// The set-points that a straight way leads over.
+fn between(places: &[Closed], from: Position, to: Position) -> Standing {
+    let mut between = Standing::default();
+    for (robot, place) in places.iter().enumerate() {
+        if !(is_free(std::slice::from_ref(place), from, to) && is_free(std::slice::from_ref(place), to, from)) {
+            between.add(robot);
+        }
+    }
+    between
 }
 
 /// All ways of one robot to its set-point.
@@ -60,63 +137,337 @@ impl Corners {
 pub struct Route {
     set_point: Position,
     corners: Arc<Corners>,
-    /// By corner: what is left from there to the set-point, m; infinite where no way leads on.
+    /// By corner: the set-points between it and the end of the way; `None`: an obstacle is.
+    sees_end: Vec<Option<Standing>>,
+    /// Places right before the set-point from which a robot gets in between those who stand beside it, and the
+    /// set-points between each corner and them.
+    entry: Position,
+    sees_entry: Vec<Option<Standing>>,
+    /// The rest of the way while nobody stands.
+    alone: Rest,
+}
+
+/// What is left of a robot's way from every corner while certain robots stand.
+#[derive(Clone, Debug, Default)]
+pub struct Rest {
+    standing: Standing,
+    /// By corner: what is left from there, m; infinite where no way leads on.
     left: Vec<f64>,
+    /// By corner: where the way leads next.
+    next: Vec<Next>,
+    open: Vec<usize>,
+}
+
+/// Where a way leads from a corner.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Next {
+    /// Straight to its end.
+    #[default]
+    End,
+    /// To the entry, then to its end.
+    Entry,
+    /// To another corner.
+    Corner(usize),
+}
+
+/// Bends of a way that a plan can reach.
+const BENDS: usize = 6;
+
+/// A way as a chain of straight legs.
+#[derive(Clone, Copy, Debug)]
+pub struct Path {
+    points: [Position; BENDS],
+    count: usize,
+    /// Its whole length, m.
+    pub length: f64,
+}
+
+impl Path {
+    /// A way without bends.
+    pub fn straight(from: Position, to: Position) -> Self {
+        Self { points: [to; BENDS], count: 1, length: (to - from).norm() }
+    }
+
+    /// The ends of its legs, m. A way with more bends than are kept ends at one.
+    pub fn points(&self) -> &[Position] {
+        &self.points[..self.count]
+    }
+
+    /// The point as far off as the way is long, in the direction in which it begins.
+    pub fn ahead(&self, from: Position) -> Position {
+        let first = self.points[0] - from;
+        if self.count == 1 { self.points[0] } else { from + first * (self.length / first.norm().max(REACHED)) }
+    }
+
+    /// The point that is `distance` (m) along the way from `from`.
+    pub fn after(&self, mut from: Position, mut distance: f64) -> Position {
+        for &to in self.points() {
+            let leg = (to - from).norm();
+            if leg > distance {
+                return from + (to - from) * (distance / leg);
+            }
+            distance -= leg;
+            from = to;
+        }
+        from
+    }
+
+    /// The same way, turned about `from` by `angle` to the left, rad.
+    pub fn turned(mut self, from: Position, angle: f64) -> Self {
+        if angle != 0.0 {
+            self.points.iter_mut().for_each(|point| *point = from + turned(*point - from, angle));
+        }
+        self
+    }
+
+    fn push(&mut self, point: Position) {
+        if self.count < BENDS {
+            self.points[self.count] = point;
+            self.count += 1;
+        }
+    }
+}
+
+impl Rest {
+    /// Room for `route`.
+    pub fn of(route: &Route) -> Self {
+        let corners = route.alone.left.len();
+        Self { open: Vec::with_capacity(corners), ..route.alone.clone() }
+    }
 }
 
 impl Route {
-    /// The routes of a team past its obstacles. `set_points` and `separations` (what each robot owes a disc of
-    /// radius min_separation / 2, m) are by robot.
-    pub fn of_team(set_points: &[Position], separations: &[f64], obstacles: &[Disc]) -> Vec<Self> {
+    /// The routes of a team past its obstacles to `ends`. `separations` (what each robot owes a disc of radius
+    /// min_separation / 2, m) are by robot; `places` are the set-points, where robots come to stand.
+    pub fn of_team(ends: &[Position], separations: &[f64], places: &[Disc], obstacles: &[Disc]) -> Vec<Self> {
         let mut sizes: Vec<(f64, Arc<Corners>)> = Vec::new();
-        let route = |(set_point, separation): (&Position, &f64)| {
+        let route = |(robot, (end, separation)): (usize, (&Position, &f64))| {
             let known = sizes.iter().find(|(size, _)| size == separation).map(|(_, corners)| corners.clone());
             let corners = known.unwrap_or_else(|| {
-                let corners = Arc::new(Corners::new(obstacles, *separation));
+                let corners = Arc::new(Corners::new(obstacles, places, *separation));
                 sizes.push((*separation, corners.clone()));
                 corners
             });
-            Self::new(*set_point, corners)
+            Self::new(robot, *end, corners)
         };
-        set_points.iter().zip(separations).map(route).collect()
+        ends.iter().zip(separations).enumerate().map(route).collect()
     }
 
-    /// Shortest ways from every corner (Dijkstra 1959).
-    fn new(set_point: Position, corners: Arc<Corners>) -> Self {
-        let Corners { closed, at, seen } = &*corners;
-        let straight = |from: &Position| {
-            if is_free(closed, *from, set_point) { (set_point - from).norm() } else { f64::INFINITY }
+    fn new(robot: usize, set_point: Position, corners: Arc<Corners>) -> Self {
+        let Corners { closed, places, at, .. } = &*corners;
+        let sees = |to: Position| {
+            at.iter().map(|from| is_free(closed, *from, to).then(|| between_but(places, robot, *from, to))).collect()
         };
-        let mut left: Vec<f64> = at.iter().map(straight).collect();
-        let mut open: Vec<usize> = (0..at.len()).collect();
+        let entry = entry(closed, places, robot, set_point);
+        let (sees_end, sees_entry) = (sees(set_point), sees(entry));
+        let mut route =
+            Self { set_point, corners: corners.clone(), sees_end, entry, sees_entry, alone: Rest::default() };
+        let mut rest = Rest { left: vec![0.0; at.len()], next: vec![Next::End; at.len()], ..Rest::default() };
+        route.walk_back(Standing::default(), &mut rest);
+        route.alone = rest;
+        route
+    }
+
+    /// Shortest ways from every corner while `standing` are in the way (Dijkstra 1959).
+    fn walk_back(&self, standing: Standing, rest: &mut Rest) {
+        let Corners { at, fixed, seen, .. } = &*self.corners;
+        let Rest { left, next, open, .. } = rest;
+        let used = if standing.is_empty() { *fixed } else { at.len() };
+        let clear = |between: &Option<Standing>| between.is_some_and(|between| !between.meets(&standing));
+        let last = (self.set_point - self.entry).norm();
+        for (corner, (left, next)) in left.iter_mut().zip(next.iter_mut()).enumerate() {
+            *next = Next::End;
+            *left = if corner >= used {
+                f64::INFINITY
+            } else if clear(&self.sees_end[corner]) {
+                (self.set_point - at[corner]).norm()
+            } else if clear(&self.sees_entry[corner]) {
+                *next = Next::Entry;
+                (self.entry - at[corner]).norm() + last
+            } else {
+                f64::INFINITY
+            };
+        }
+        open.clear();
+        open.extend(0..used);
         while let Some(nearest) = (0..open.len()).min_by(|a, b| left[open[*a]].total_cmp(&left[open[*b]])) {
             let corner = open.swap_remove(nearest);
-            for &other in &seen[corner] {
-                left[other] = left[other].min(left[corner] + (at[other] - at[corner]).norm());
+            if left[corner].is_infinite() {
+                break;
+            }
+            for (other, between) in &seen[corner] {
+                if *other < used && !between.meets(&standing) {
+                    let way = left[corner] + (at[*other] - at[corner]).norm();
+                    if way < left[*other] {
+                        (left[*other], next[*other]) = (way, Next::Corner(corner));
+                    }
+                }
             }
         }
-        Self { set_point, corners, left }
+        rest.standing = standing;
     }
 
-    /// Where a robot at `from` (m) has to look: the set-point itself where nothing is between, else the next
-    /// corner of the shortest way, as far off as that way is long. The set-point where no way leads out.
+    /// Where it ends, m.
+    pub fn end(&self) -> Position {
+        self.set_point
+    }
+
+    /// Where a robot at `from` (m) has to look while nobody stands: the set-point itself where nothing is between,
+    /// else the next corner of the shortest way, as far off as that way is long. The set-point where no way leads out.
     pub fn aim(&self, from: Position) -> Position {
-        let Corners { closed, at, .. } = &*self.corners;
-        if is_free(closed, from, self.set_point) {
-            return self.set_point;
+        self.path(from).ahead(from)
+    }
+
+    /// The shortest way from `from` while nobody stands.
+    pub fn path(&self, from: Position) -> Path {
+        let straight = Path::straight(from, self.set_point);
+        if is_free(&self.corners.closed, from, self.set_point) {
+            return straight;
         }
-        let mut aim = self.set_point;
-        let mut shortest = f64::INFINITY;
-        for (corner, left) in at.iter().zip(&self.left) {
-            let near = (corner - from).norm();
+        self.path_past(from, Standing::default(), &self.alone).unwrap_or(straight)
+    }
+
+    /// The same round those of `standing` who are in the way; as if they were not there where no way leads
+    /// round them.
+    ///
+    /// `tight` are those of them who cannot make room. The others are walked round only where that is no more
+    /// than `price` (m) longer for each of them that would have to.
+    pub fn path_round(
+        &self,
+        from: Position,
+        standing: Standing,
+        tight: Standing,
+        price: f64,
+        rests: &mut [Rest; 2],
+    ) -> Path {
+        let [rest, rest_tight] = rests;
+        let alone = self.path(from);
+        if standing.is_empty() || self.is_clear(from, &alone, standing) {
+            return alone;
+        }
+        let round = self.shortest(from, alone, standing, rest);
+        if tight == standing {
+            return round;
+        }
+        let through = self.shortest(from, alone, tight, rest_tight);
+        let moved = self.met(from, &through).among(&standing).count();
+        if round.length <= through.length + price * f64::from(moved) { round } else { through }
+    }
+
+    /// The set-points that a path leads over.
+    fn met(&self, from: Position, path: &Path) -> Standing {
+        let starts = std::iter::once(&from).chain(path.points());
+        let mut met = Standing::default();
+        for (from, to) in starts.zip(path.points()) {
+            let between = between(&self.corners.places, *from, *to);
+            met = Standing(std::array::from_fn(|word| met.0[word] | between.0[word]));
+        }
+        met
+    }
+
+    fn shortest(&self, from: Position, alone: Path, standing: Standing, rest: &mut Rest) -> Path {
+        let Corners { closed, places, .. } = &*self.corners;
+        let is_clear =
+            |from: Position, to: Position| standing.is_empty() || !between(places, from, to).meets(&standing);
+        if standing.is_empty() || self.is_clear(from, &alone, standing) {
+            return alone;
+        }
+        let mut best: Option<Path> = None;
+        if is_free(closed, from, self.entry) && is_clear(from, self.entry) {
+            let mut through = Path::straight(from, self.entry);
+            through.push(self.set_point);
+            through.length += (self.set_point - self.entry).norm();
+            best = Some(through);
+        }
+        if rest.standing != standing {
+            self.walk_back(standing, rest);
+        }
+        let round = self.path_past(from, standing, rest);
+        best = match (best, round) {
+            (Some(through), Some(round)) if round.length < through.length => Some(round),
+            (through, round) => through.or(round),
+        };
+        best.unwrap_or(Path { length: f64::INFINITY, ..alone })
+    }
+
+    /// Whether nobody of `standing` is in the way of `path`, which keeps clear of the obstacles.
+    fn is_clear(&self, from: Position, path: &Path, standing: Standing) -> bool {
+        let starts = std::iter::once(&from).chain(path.points());
+        starts.zip(path.points()).all(|(from, to)| !between(&self.corners.places, *from, *to).meets(&standing))
+    }
+
+    fn path_past(&self, from: Position, standing: Standing, rest: &Rest) -> Option<Path> {
+        let Corners { closed, places, at, .. } = &*self.corners;
+        let (mut first, mut shortest) = (None, f64::INFINITY);
+        for (corner, (place, left)) in at.iter().zip(&rest.left).enumerate() {
+            let near = (place - from).norm();
             let way = near + left;
-            if near > REACHED && way < shortest && is_free(closed, from, *corner) {
-                shortest = way;
-                aim = from + (corner - from) * (way / near);
+            let free = || {
+                is_free(closed, from, *place)
+                    && (standing.is_empty() || !between(places, from, *place).meets(&standing))
+            };
+            if near > REACHED && way < shortest && free() {
+                (first, shortest) = (Some(corner), way);
             }
         }
-        aim
+        let mut corner = first?;
+        let mut path = Path { length: shortest, ..Path::straight(from, at[corner]) };
+        loop {
+            match rest.next[corner] {
+                Next::Corner(next) => {
+                    path.push(at[next]);
+                    corner = next;
+                }
+                Next::Entry => {
+                    path.push(self.entry);
+                    path.push(self.set_point);
+                    return Some(path);
+                }
+                Next::End => {
+                    path.push(self.set_point);
+                    return Some(path);
+                }
+            }
+        }
     }
+}
+
+/// [`between`], without the place of `robot` itself.
+fn between_but(places: &[Closed], robot: usize, from: Position, to: Position) -> Standing {
+    let mut between = between(places, from, to);
+    between.0[robot / 64] &= !(1 << (robot % 64));
+    between
+}
+
+/// The place two separations before the set-point of `robot` from where it gets in between all others with the most
+/// room.
+fn entry(closed: &[Closed], places: &[Closed], robot: usize, set_point: Position) -> Position {
+    const DIRECTIONS: usize = 128;
+    let others = || {
+        let places = places.iter().enumerate().filter(|(other, _)| *other != robot).map(|(_, place)| place);
+        closed.iter().chain(places).filter(|disc| (disc.centre - set_point).norm() < 3.0 * disc.radius)
+    };
+    let reach = 2.0 * places[robot].radius;
+    let room = |to: Position| {
+        let way = to - set_point;
+        let left = |disc: &Closed| {
+            let along = ((disc.centre - set_point).dot(&way) / way.norm_squared()).clamp(0.0, 1.0);
+            (set_point + way * along - disc.centre).norm() - disc.radius
+        };
+        let ahead = |disc: &Closed| (set_point + way * 0.5 - disc.centre).norm() - disc.radius;
+        let narrowest = others().map(left).fold(f64::INFINITY, f64::min);
+        // Where it is as narrow at the set-point itself whatever the direction, what opens most.
+        narrowest.min(1.0) + 1e-3 * others().map(ahead).fold(f64::INFINITY, f64::min).min(1.0)
+    };
+    let at = |direction: usize| {
+        let (sin, cos) = (TAU * direction as f64 / DIRECTIONS as f64).sin_cos();
+        set_point + Position::new(cos, sin) * reach
+    };
+    let best = (0..DIRECTIONS)
+        .map(at)
+        .map(|at| (room(at), at))
+        .fold((f64::NEG_INFINITY, set_point), |best, next| if next.0 > best.0 { next } else { best });
+    best.1
 }
 
 /// Whether a robot can stand there.
@@ -125,7 +476,7 @@ fn is_open(closed: &[Closed], point: Position) -> bool {
 }
 
 /// Whether the straight way keeps out of every disc. One that starts inside may lead out, not deeper.
-fn is_free(closed: &[Closed], from: Position, to: Position) -> bool {
+pub fn is_free(closed: &[Closed], from: Position, to: Position) -> bool {
     let way = to - from;
     let length_2 = way.norm_squared();
     closed.iter().all(|disc| {
@@ -143,10 +494,14 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
+    fn place((x, y): (f64, f64)) -> Disc {
+        Disc { centre: Position::new(x, y), extra: 0.0 }
+    }
+
     fn route(set_point: (f64, f64), obstacles: &[(f64, f64)]) -> Route {
         let discs: Vec<Disc> =
             obstacles.iter().map(|(x, y)| Disc { centre: Position::new(*x, *y), extra: 0.0 }).collect();
-        Route::of_team(&[Position::new(set_point.0, set_point.1)], &[1.5], &discs).remove(0)
+        Route::of_team(&[Position::new(set_point.0, set_point.1)], &[1.5], &[place(set_point)], &discs).remove(0)
     }
 
     /// Walks along the aim in small steps: (arrived, length of the way, least distance to an obstacle).
@@ -199,7 +554,7 @@ mod tests {
     fn robots_of_other_sizes_have_ways_of_their_own() {
         let discs = [Disc { centre: Position::new(5.0, 1.6), extra: 0.0 }];
         let goal = Position::new(10.0, 0.0);
-        let routes = Route::of_team(&[goal; 3], &[1.5, 1.5, 2.0], &discs);
+        let routes = Route::of_team(&[goal; 3], &[1.5, 1.5, 2.0], &[place((10.0, 0.0)); 3], &discs);
         assert_eq!(routes[1].aim(Position::zeros()), goal);
         assert!(routes[2].aim(Position::zeros()).y < 0.0);
         assert!(Arc::ptr_eq(&routes[0].corners, &routes[1].corners));

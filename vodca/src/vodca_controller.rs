@@ -14,9 +14,11 @@ use crate::mpc::problem::{Plan, Problem, Row, SlackPrice, SolveError, Target};
 use crate::params::{Infeasible, Params, Reference};
 use crate::prediction::Prediction;
 use crate::reference;
-use crate::route::Route;
+use crate::right_of_way::{Regard, regard_others, way_on};
+use crate::route::{Path, Rest};
 use crate::safety::cell::{Cell, Present};
 use crate::safety::last_check::{TOLERANCE, is_answer, nearest_safe};
+use crate::standing::Standing;
 use crate::step::{Level, Status};
 use crate::{Input, Position};
 use std::sync::Arc;
@@ -35,6 +37,14 @@ pub struct VodcaController {
     previous: Option<Previous>,
     memory: ConflictMemory,
     traffic: Traffic,
+    standing: Standing,
+    rests: [[Rest; 2]; 2],
+    /// The robot's way in this tick.
+    way: Path,
+    /// Where that makes it look, m.
+    on: Position,
+    /// By robot: how this one regards it.
+    regards: Vec<Regard>,
 }
 
 /// The robot's own plan of tick k - 1.
@@ -61,6 +71,11 @@ impl VodcaController {
             previous: None,
             memory: ConflictMemory::default(),
             traffic: Traffic::with_capacity(robots, &params.aim, stride),
+            standing: Standing::with_capacity(hazards),
+            rests: [&layout.routes[robot], &layout.outside[robot]].map(|route| [Rest::of(route), Rest::of(route)]),
+            way: Path::straight(layout.set_points[robot], layout.set_points[robot]),
+            on: layout.set_points[robot],
+            regards: Vec::with_capacity(robots),
         }
     }
 
@@ -73,7 +88,7 @@ impl VodcaController {
     fn detect(&mut self, view: &View<'_>) -> usize {
         self.rows.clear();
         let Some(previous) = &self.previous else { return 0 };
-        let hazards = hazards(&self.params, &self.layout, self.robot, &self.memory, view);
+        let hazards = hazards(&self.params, &self.layout, self.robot, view, &self.regards);
         let min_separation = self.params.model.min_separation;
         let vodca = &self.params.vodca;
         let turn = self.memory.turn(vodca);
@@ -84,7 +99,7 @@ impl VodcaController {
     fn look_ahead(&mut self, view: &View<'_>) -> f64 {
         let Self { params, layout, traffic, robot, .. } = self;
         let Params { model, aim, .. } = &*params;
-        let own = Walk { from: view.position, to: layout.set_points[*robot] };
+        let own = Walk { from: view.position, to: self.on };
         if aim.look_ahead == 0 || (own.to - own.from).norm() < aim.fade_start {
             return 0.0;
         }
@@ -92,36 +107,31 @@ impl VodcaController {
         for (other, neighbour) in view.neighbours.iter().enumerate().filter(|(other, _)| *other != *robot) {
             if let Some((_, from)) = neighbour.present {
                 let separation = model.min_separation + layout.robot_extra[*robot] + layout.robot_extra[other];
-                traffic.add(Walk { from, to: neighbour.set_point }, separation);
+                traffic.add(Walk { from, to: neighbour.toward }, separation);
             }
         }
         traffic.turn(own)
     }
 
-    /// Where to go on: to the set-point; without patience where the shortest way round the obstacles leads;
-    /// in the end anywhere.
-    fn way_on(&self, view: &View<'_>) -> Position {
-        let Self { robot, params, layout, memory, .. } = self;
-        if !memory.is_out_of_patience(&params.vodca) {
-            return layout.set_points[*robot];
-        }
-        let on = layout.routes[*robot].aim(view.position);
-        if !memory.backs_off(&params.vodca) {
-            return on;
-        }
-        back_off::aim(*robot, view.tick, view.position, on, 2.0 * params.model.min_separation)
-    }
-
     /// Rule 1: the reference, aimed by rule 4.
     fn aim(&mut self, view: &View<'_>) {
-        let set_point = self.way_on(view);
-        match self.params.mpc.reference {
-            Reference::SetPoint => reference::set_point(&mut self.target, set_point, view.horizon),
-            Reference::Straight => {
-                let seen = reference::aim(&self.params.aim, self.memory.aim, view.position, set_point);
-                let model = &self.params.model;
-                let (h, speed) = (model.sample_time, model.max_speed);
-                reference::straight(&mut self.target, view.position, seen, view.horizon, h, speed);
+        let Params { model, mpc, aim, vodca, .. } = &self.params;
+        let (h, speed) = (model.sample_time, model.max_speed);
+        match mpc.reference {
+            Reference::SetPoint => {
+                reference::set_point(&mut self.target, self.layout.set_points[self.robot], view.horizon);
+            }
+            Reference::Straight | Reference::Route => {
+                let mut way = self.way;
+                if self.memory.backs_off(vodca) {
+                    let to = self.on;
+                    let off = back_off::aim(self.robot, view.tick, view.position, to, 2.0 * model.min_separation);
+                    if off != to {
+                        way = Path::straight(view.position, off);
+                    }
+                }
+                let way = way.turned(view.position, -self.memory.aim * aim.fade(way.length));
+                reference::along(&mut self.target, view.position, way.points(), view.horizon, h, speed);
             }
         }
     }
@@ -219,7 +229,8 @@ impl VodcaController {
             debug_assert!(is_answer(inputs[0] * model.sample_time, &self.cell, 2.0 * TOLERANCE));
         }
         let set_point = self.layout.set_points[self.robot];
-        (Prediction::roll_out(view.position, set_point, model.sample_time, inputs), shielded)
+        let plan = Prediction::roll_out(view.position, set_point, model.sample_time, inputs);
+        (plan.looking(self.on), shielded)
     }
 }
 
@@ -231,6 +242,10 @@ fn bounded(axis: f64, bound: f64) -> f64 {
 impl Controller for VodcaController {
     fn tick(&mut self, view: &View<'_>) -> Decision {
         let started = Instant::now();
+        let Self { params, layout, robot, standing, memory, regards, rests, .. } = self;
+        regard_others(params, layout, *robot, memory, view, standing, regards);
+        self.way = way_on(params, layout, *robot, view, standing, rests);
+        self.on = self.way.ahead(view.position);
         let rows = self.detect(view);
         let turn = self.look_ahead(view);
         self.memory.remember(&self.params.aim, &self.params.vodca, rows, turn);
@@ -257,18 +272,20 @@ pub fn hazards<'a>(
     params: &'a Params,
     layout: &'a Layout,
     robot: usize,
-    memory: &ConflictMemory,
     view: &'a View<'a>,
+    regards: &'a [Regard],
 ) -> impl Iterator<Item = Hazard<'a>> + Clone {
-    let way = (layout.set_points[robot] - view.position).norm();
-    let gives_way = way < params.give_way.radius || memory.is_out_of_patience(&params.vodca);
+    let clearance = params.give_way.clearance;
     let owed = move |extra: f64| params.model.min_separation + layout.robot_extra[robot] + extra;
     let others = view.neighbours.iter().enumerate().filter(move |(other, _)| *other != robot);
     let neighbours = others.filter_map(move |(other, neighbour)| {
         let separation = owed(layout.robot_extra[other]);
-        let wish = || wish_to_let_pass(params, way, neighbour, &layout.routes[other]);
-        if let Some(course) = gives_way.then(wish).flatten() {
-            return Some(Hazard { course, separation: separation + params.give_way.clearance });
+        let wish = || wish(params, neighbour);
+        if regards[other] == Regard::Stays {
+            return None;
+        }
+        if let Some(course) = (regards[other] == Regard::Wish).then(wish).flatten() {
+            return Some(Hazard { course, separation: separation + clearance });
         }
         let (tick, plan) = neighbour.plan.as_ref()?;
         let age = (view.tick - 1).saturating_sub(*tick) as usize;
@@ -284,11 +301,7 @@ pub fn hazards<'a>(
 /// Rule 3: a robot near its set-point, or without patience, lets those pass that still have farther to go
 /// than its own `way` (m), by keeping away from where they wish to walk. (A plan that already avoids a
 /// parked robot shows no conflict.)
-fn wish_to_let_pass<'a>(params: &Params, way: f64, neighbour: &Neighbour, route: &Route) -> Option<Course<'a>> {
+fn wish<'a>(params: &Params, neighbour: &Neighbour) -> Option<Course<'a>> {
     let (_, from) = neighbour.present?;
-    if (neighbour.set_point - from).norm() <= way {
-        return None;
-    }
-    let to = if params.vodca.patience < 1.0 { route.aim(from) } else { neighbour.set_point };
-    Some(Course::Wish { from, to, stride: params.model.sample_time * params.model.max_speed })
+    Some(Course::Wish { from, to: neighbour.toward, stride: params.model.sample_time * params.model.max_speed })
 }

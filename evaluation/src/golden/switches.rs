@@ -1,7 +1,7 @@
 //! The golden files' switches as parameters.
 
 use serde::Deserialize;
-use vodca::params::{BeyondHorizon, Infeasible, Params, RowChoice, RowStep, Softness, Tie};
+use vodca::params::{BeyondHorizon, Infeasible, Params, Reference, RowChoice, RowStep, Softness, Tie};
 
 /// Switches of the paper's family; names are the files'.
 #[derive(Clone, Debug, Deserialize)]
@@ -124,6 +124,7 @@ impl SafeSwitches {
             return Err(format!("rv = {}, straight = {} are not supported; allowed: 1.5, 1", self.rv, self.straight));
         }
         let mut params = Params::safe();
+        params.mpc.reference = Reference::Straight;
         params.model.sample_time = self.h;
         params.model.max_speed = self.umax;
         params.model.min_separation = self.rv;

@@ -56,15 +56,15 @@ impl OrcaController {
         }
     }
 
-    /// Straight to the set-point, turned right by `orca.aim`, no faster than arrives within the tick, and
+    /// Along the shortest way round the obstacles, turned right by `orca.aim`, no faster than arrives within the tick, and
     /// pushed by a draw of `orca.push`: exact symmetry would hold robots in front of each other for ever.
     fn preferred_velocity(&self, position: Position, tick: u64) -> Input {
         let model = &self.params.model;
-        let way = self.layout.set_points[self.robot] - position;
-        let speed = (way.norm() / model.sample_time).min(model.max_speed);
-        let straight = if way.norm() < 1e-9 { Input::zeros() } else { way.normalize() * speed };
+        let path = self.layout.routes[self.robot].path(position);
+        let step = path.after(position, model.max_speed * model.sample_time) - position;
+        let straight = step / model.sample_time;
         // A constant turn circles the set-point at the end: a full tick's way is lost there.
-        let aim = self.params.orca.aim * (way.norm() / self.params.orca.fade).min(1.0);
+        let aim = self.params.orca.aim * (path.length / self.params.orca.fade).min(1.0);
         turned(straight, -aim) + in_disc(self.params.orca.push, self.seed, Use::Push, self.robot, tick)
     }
 

@@ -127,6 +127,9 @@ pub enum Reference {
     SetPoint,
     /// A straight line to the set-point with the largest axis at full speed (ARCHITECTURE, rule 1).
     Straight,
+    /// The shortest way to the set-point round obstacles and robots that stand, in turn where set-points close each
+    /// other in, with the largest axis at full speed.
+    Route,
 }
 
 /// VODCA: detection and rows (paper, section III-C).

@@ -91,7 +91,7 @@ impl Params {
     /// The safe controller (ARCHITECTURE, rules 1 to 11).
     pub fn safe() -> Self {
         let mut params = Self::paper();
-        params.mpc.reference = Reference::Straight;
+        params.mpc.reference = Reference::Route;
         params.vodca.rows = RowChoice::Each;
         params.vodca.turn = 0.16;
         params.vodca.turn_lasting = 0.5;
@@ -104,7 +104,7 @@ impl Params {
         params.aim =
             Aim { angle: 0.1, memory: 0.4, fade_start: 2.2, fade_end: 5.4, look_ahead: 49, most: 0.6, price: 2.5 };
         params.horizon.jitter = 3;
-        params.give_way.radius = 1.2;
+        params.give_way = GiveWay { radius: 1.2, clearance: 0.0 };
         params.cell.enabled = true;
         params
     }

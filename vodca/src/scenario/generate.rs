@@ -1,7 +1,11 @@
-//! Scenarios of any size by name: rings, random boxes, exchanges of sides, gathering groups.
+//! Scenarios of any size by name: rings, random boxes, exchanges of sides, gathering groups, tight places
+//! ([`tight`]) and walls ([`walls`]).
 //!
 //! Coordinates are rounded to 1e-9 m, so that a generated layout and its copy in a file are the same
 //! on every machine.
+
+mod tight;
+mod walls;
 
 use super::file::{obstacle_name, robot_name};
 use super::{DEFAULT_MAX_TICKS, MAX_ROBOTS, Obstacle, Robot, Scenario, ScenarioError};
@@ -9,9 +13,12 @@ use crate::Position;
 use crate::random::{self, Use};
 use chacha20::ChaCha8Rng;
 use std::f64::consts::PI;
+use tight::{MIXED, PARK, PERMUTE, TIGHT_RING};
+use walls::{CORRIDOR, DOOR, FOREST, POCKET, ROOMS};
 
 /// The forms of all generators, for messages.
-pub(super) const FORMS: &[&str] = &[RING, BOX, EXCHANGE, SEGREGATE];
+pub(super) const FORMS: &[&str] =
+    &[RING, BOX, EXCHANGE, SEGREGATE, PARK, TIGHT_RING, PERMUTE, MIXED, DOOR, POCKET, CORRIDOR, FOREST, ROOMS];
 const RING: &str = "ring:N";
 const BOX: &str = "box:N:OBSTACLES:SEED";
 const EXCHANGE: &str = "exchange:N:SEED";
@@ -64,6 +71,15 @@ fn make(form: &str, arguments: &[&str], robots: Option<usize>) -> Result<Scenari
         RING => Ok(ring(count()?)),
         BOX => random_box(count()?, number(1, "number of obstacles", MAX_ROBOTS as u64)? as usize, seed(2)?),
         EXCHANGE => Ok(exchange(count()?, seed(1)?)),
+        PARK => tight::park(count()?, seed(1)?),
+        TIGHT_RING => Ok(tight::tight_ring(count()?, seed(1)?)),
+        PERMUTE => Ok(tight::permute(count()?, seed(1)?)),
+        MIXED => tight::mixed(count()?, seed(1)?),
+        DOOR => walls::door(count()?, width(arguments.get(1).copied())?, seed(2)?),
+        POCKET => walls::pocket(count()?, seed(1)?),
+        CORRIDOR => walls::corridor(count()?, seed(1)?),
+        FOREST => walls::forest(count()?, seed(1)?),
+        ROOMS => walls::rooms(count()?, seed(1)?),
         _ => {
             let text = arguments.first().ok_or("the groups are missing")?;
             let sizes = text.split_once('x').and_then(|(g, s)| Some((g.parse().ok()?, s.parse().ok()?)));
@@ -74,6 +90,15 @@ fn make(form: &str, arguments: &[&str], robots: Option<usize>) -> Result<Scenari
                 _ => Err(format!("`{text}` is not GROUPSxSIZE with 1..={MAX_ROBOTS} robots in all")),
             }
         }
+    }
+}
+
+/// The clear width of a door, m; 3.4 where none is given: two robots pass each other.
+fn width(text: Option<&str>) -> Result<f64, String> {
+    let Some(text) = text else { return Ok(3.4) };
+    match text.parse::<f64>() {
+        Ok(width) if (walls::NARROWEST..=100.0).contains(&width) => Ok(width),
+        _ => Err(format!("the width `{text}` is not a number of metres in {}..=100", walls::NARROWEST)),
     }
 }
 

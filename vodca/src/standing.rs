@@ -1,0 +1,65 @@
+//! Robots that stand where they want to be: others walk round them.
+//!
+//! Routes ([`crate::route`]) lead round what never moves. A robot whose disc covers its set-point stands as well,
+//! for the time being.
+
+use crate::Position;
+use crate::chains::Chains;
+use crate::controller::View;
+use crate::layout::Layout;
+use crate::params::Params;
+use crate::route::{self, Closed, is_free};
+
+/// What stands, seen by one robot in one tick.
+#[derive(Clone, Debug)]
+pub struct Standing {
+    /// What the centre of the robot must not enter: robots that stand, then obstacles.
+    closed: Vec<Closed>,
+    robots: usize,
+    /// The robots that stand, by number.
+    pub who: route::Standing,
+    /// Those of them who cannot make room.
+    pub tight: route::Standing,
+    chains: Chains,
+}
+
+impl Standing {
+    /// Room for `discs`.
+    pub fn with_capacity(discs: usize) -> Self {
+        Self {
+            closed: Vec::with_capacity(discs),
+            robots: 0,
+            who: route::Standing::default(),
+            tight: route::Standing::default(),
+            chains: Chains::with_capacity(discs),
+        }
+    }
+
+    /// Looks at who stands in `view`, as `walker` has to keep away from it.
+    pub fn look(&mut self, params: &Params, layout: &Layout, walker: usize, view: &View<'_>) {
+        let min_separation = params.model.min_separation;
+        self.closed.clear();
+        (self.who, self.tight) = Default::default();
+        let owed = |extra: f64| min_separation + layout.robot_extra[walker] + extra;
+        for (other, neighbour) in view.neighbours.iter().enumerate().filter(|(other, _)| *other != walker) {
+            let covers = |at: Position| (at - neighbour.set_point).norm() < 0.5 * min_separation;
+            if !neighbour.present.is_some_and(|(_, at)| covers(at)) {
+                continue;
+            }
+            self.closed.push(Closed { centre: neighbour.set_point, radius: owed(layout.robot_extra[other]) });
+            self.who.add(other);
+            if layout.is_tight(other, min_separation) {
+                self.tight.add(other);
+            }
+        }
+        self.robots = self.closed.len();
+        let obstacles = layout.obstacles.iter();
+        self.closed.extend(obstacles.map(|disc| Closed { centre: disc.centre, radius: owed(disc.extra) }));
+    }
+
+    /// Whether those who stand, and the obstacles, close the way between two places.
+    pub fn shuts_in(&mut self, from: Position, to: Position) -> bool {
+        let Self { closed, robots, chains, .. } = self;
+        !is_free(&closed[..*robots], from, to) && chains.separate(closed, from, to)
+    }
+}
