@@ -1,5 +1,6 @@
 //! One robot of the team: predicts, detects conflicts, solves its own MPC, publishes its plan.
 pub mod baseline;
+pub mod bounds;
 pub mod chains;
 pub mod controller;
 pub mod filling;
