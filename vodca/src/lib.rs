@@ -2,6 +2,7 @@
 
 pub mod baseline;
 pub mod body;
+pub mod bounds;
 pub mod chains;
 pub mod conflict;
 pub mod controller;

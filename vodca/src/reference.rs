@@ -96,6 +96,23 @@ mod tests {
     }
 
     #[test]
+    fn a_reference_bends_round_corners_at_full_speed() {
+        let mut target = empty_target();
+        let from = Position::zeros();
+        let points = [Position::new(0.4, 0.0), Position::new(0.4, 0.5)];
+        along(&mut target, from, &points, Horizon::new(4).unwrap(), 0.2, 1.5);
+        let expected = [(0.3, 0.0), (0.4, 0.2), (0.4, 0.5), (0.4, 0.5)];
+        for (state, (x, y)) in target.states.iter().zip(expected) {
+            assert!((state - Position::new(x, y)).norm() < 1e-12, "{state}");
+        }
+        assert!(target.inputs[..4].iter().all(|input| input.amax() <= 1.5 + 1e-12));
+        let (mut alone, to) = (empty_target(), Position::new(3.0, -2.0));
+        straight(&mut alone, from, to, Horizon::new(20).unwrap(), 0.2, 1.5);
+        along(&mut target, from, &[to], Horizon::new(20).unwrap(), 0.2, 1.5);
+        assert!(target.states.iter().zip(&alone.states).take(20).all(|(a, b)| (a - b).norm() < 1e-12));
+    }
+
+    #[test]
     fn aim_turns_right_far_from_the_set_point_only() {
         let params = Aim { angle: 0.35, fade_start: 1.5, fade_end: 4.5, ..Params::paper().aim };
         let here = Position::zeros();

@@ -544,6 +544,22 @@ mod tests {
     }
 
     #[test]
+    fn who_stands_is_walked_round_where_that_is_cheaper_than_pushing() {
+        let ends = [Position::new(10.0, 0.0), Position::new(5.0, 0.2)];
+        let places = ends.map(|centre| Disc { centre, extra: 0.0 });
+        let route = Route::of_team(&ends, &[1.5; 2], &places, &[]).remove(0);
+        let mut rests = [Rest::of(&route), Rest::of(&route)];
+        let mut stands = Standing::default();
+        let mut way = |stands, tight, price| route.path_round(Position::zeros(), stands, tight, price, &mut rests);
+        assert_eq!(way(stands, Standing::default(), 3.0).points(), &ends[..1]);
+        stands.add(1);
+        let round = way(stands, Standing::default(), 3.0);
+        assert!(round.points().len() > 1 && round.length < 10.8 && round.points()[0].y < 0.0);
+        assert_eq!(way(stands, Standing::default(), 0.0).points(), &ends[..1], "it makes room");
+        assert!(way(stands, stands, 0.0).points().len() > 1, "it cannot make room");
+    }
+
+    #[test]
     fn who_is_shut_in_looks_at_the_set_point() {
         let ring: Vec<(f64, f64)> = (0..8).map(|k| (TAU * f64::from(k) / 8.0).sin_cos()).collect();
         let ring: Vec<(f64, f64)> = ring.iter().map(|(sin, cos)| (2.0 * cos, 2.0 * sin)).collect();

@@ -275,7 +275,9 @@ pub fn hazards<'a>(
     view: &'a View<'a>,
     regards: &'a [Regard],
 ) -> impl Iterator<Item = Hazard<'a>> + Clone {
-    let clearance = params.give_way.clearance;
+    // Never more than the layout has room for.
+    let room = if params.mpc.reference == Reference::Route { layout.room[robot] / 2.0 } else { f64::INFINITY };
+    let clearance = params.give_way.clearance.min(room);
     let owed = move |extra: f64| params.model.min_separation + layout.robot_extra[robot] + extra;
     let others = view.neighbours.iter().enumerate().filter(move |(other, _)| *other != robot);
     let neighbours = others.filter_map(move |(other, neighbour)| {

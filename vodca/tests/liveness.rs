@@ -30,17 +30,26 @@ fn arrives(name: &str, fixed: Option<u64>, seed: u64, sets: &[&str]) -> bool {
 }
 
 #[test]
-fn pockets_between_obstacles_and_parked_robots_are_left() {
-    for seed in [52, 62] {
-        let name = format!("box:{}:2:{seed}", if seed == 52 { 10 } else { 20 });
-        assert!(arrives(&name, None, seed, &[]), "{name}");
-        assert!(!arrives(&name, None, seed, &["vodca.patience=1"]), "{name} shows nothing any more: take another one");
+fn pockets_and_doors_are_left_along_the_way_round() {
+    for name in ["pocket:6:0", "door:10:5:0"] {
+        assert!(arrives(name, Some(20), 0, &[]), "{name}");
+        let straight = arrives(name, Some(20), 0, &["mpc.reference=\"straight\""]);
+        assert!(!straight, "{name} shows nothing any more: take another one");
+    }
+}
+
+#[test]
+fn lots_without_room_are_filled_from_their_middle() {
+    for (name, fixed) in [("park:16:0", Some(20)), ("park:36:0", None), ("tight_ring:24:0", Some(20))] {
+        assert!(arrives(name, fixed, 0, &[]), "{name}");
+        let straight = arrives(name, fixed, 0, &["mpc.reference=\"straight\""]);
+        assert!(!straight, "{name} shows nothing any more: take another one");
     }
 }
 
 #[test]
 fn robots_wedged_between_each_other_come_apart() {
-    assert!(arrives("rand48o0_s3", Some(10), 101, &[]));
-    let without = arrives("rand48o0_s3", Some(10), 101, &["vodca.back_off=1"]);
+    assert!(arrives("permute:16:5", Some(20), 5, &[]));
+    let without = arrives("permute:16:5", Some(20), 5, &["vodca.back_off=1"]);
     assert!(!without, "shows nothing any more: take another one");
 }

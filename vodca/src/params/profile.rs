@@ -104,7 +104,7 @@ impl Params {
         params.aim =
             Aim { angle: 0.1, memory: 0.4, fade_start: 2.2, fade_end: 5.4, look_ahead: 49, most: 0.6, price: 2.5 };
         params.horizon.jitter = 3;
-        params.give_way = GiveWay { radius: 1.2, clearance: 0.0 };
+        params.give_way.radius = 1.2;
         params.cell.enabled = true;
         params
     }

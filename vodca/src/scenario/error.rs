@@ -44,7 +44,8 @@ pub enum ScenarioError {
     /// No file, built-in or generator by that name.
     #[error(
         "there is no scenario `{spec}`; near names: {}; generated ones: ring:N, box:N:OBSTACLES:SEED, exchange:N:SEED, \
-         segregate:GROUPSxSIZE:SEED; a file needs a `/` or `.toml` in its name",
+         segregate:GROUPSxSIZE:SEED, park:N:SEED, tight_ring:N:SEED, permute:N:SEED, mixed:N:SEED, door:N:WIDTH:SEED, \
+         pocket:N:SEED, corridor:N:SEED, forest:N:SEED, rooms:N:SEED; a file needs a `/` or `.toml` in its name",
         if .near.is_empty() { "none" } else { .near }
     )]
     Unknown {

@@ -306,6 +306,22 @@ mod tests {
     }
 
     #[test]
+    fn every_family_of_tight_places_and_walls_is_valid_for_every_seed() {
+        for seed in 0..50 {
+            for form in ["park:16", "park:36", "tight_ring:24", "tight_ring:40", "permute:36", "mixed:16", "pocket:6"] {
+                made(&format!("{form}:{seed}"));
+            }
+            for form in ["door:6:3.4", "door:16:5", "corridor:10", "forest:15", "rooms:20"] {
+                made(&format!("{form}:{seed}"));
+            }
+        }
+        let ring = made("tight_ring:32:7");
+        let apart = |i: usize| (ring.robots[i].start - ring.robots[(i + 1) % 32].start).norm();
+        assert!((0..32).all(|i| (1.5..1.7 + 1e-6).contains(&apart(i))));
+        assert!(Scenario::resolve(Some("door:6:1.5:0"), None).unwrap_err().to_string().contains("the width `1.5`"));
+    }
+
+    #[test]
     fn the_seed_decides_and_the_name_reproduces() {
         for (a, b) in
             [("box:16:3:1", "box:16:3:2"), ("exchange:14:1", "exchange:14:2"), ("segregate:3x4:1", "segregate:3x4:2")]
