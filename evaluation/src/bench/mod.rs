@@ -205,15 +205,15 @@ impl Extent<'_> {
 /// A piece of a benchmark: its part, what it is expected to take (s), and how it is measured.
 type Piece = (Part, fn(&Options) -> f64, fn(&Extent<'_>, &mut Results) -> Result<(), BenchError>);
 
-/// All pieces, in their order.
+/// All pieces, in their order: what takes long, and what needs many processes, comes last.
 const PIECES: [Piece; 7] = [
     (Part::Solver, qp::seconds, qp::run),
     (Part::Step, step::seconds, step::run),
     (Part::Hop, hop::seconds, hop::run),
+    (Part::Policy, policy::seconds, policy::run),
     (Part::Exchange, exchange::seconds, exchange::run),
     (Part::Scale, scale::seconds, scale::run),
     (Part::Scale, ticks::seconds, ticks::run),
-    (Part::Policy, policy::seconds, policy::run),
 ];
 
 fn pieces(wanted: Part) -> impl Iterator<Item = Piece> {
