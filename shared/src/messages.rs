@@ -1,9 +1,10 @@
 //! Every payload that crosses a process border. Plain memory (`repr(C)`, no pointers): the reader
 //! sees the writer's bytes. Only a type's name and size are compared when a service is opened, so
-//! any change of a field needs a new number in the names given in `services.rs`.
+//! any change of a field needs a new number in its `type_name`.
 //!
 //! Stamps are nanoseconds of the host's monotonic clock, comparable between its processes.
 
+use iceoryx2::prelude::ZeroCopySend;
 use vodca::horizon::{Horizon, MAX_HORIZON};
 use vodca::prediction::Prediction;
 use vodca::step::{Level, Status, Step};
@@ -39,7 +40,8 @@ pub mod kind {
 /// In a relayed exchange `plans` plans of tick `tick - 1` follow it. A robot that misses it does
 /// nothing: the coordinator will miss its report.
 #[repr(C)]
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, ZeroCopySend)]
+#[type_name("vodca/Announcement/2")]
 pub struct Announcement {
     /// Which episode of this run it belongs to, from [`crate::team::FIRST_EPOCH`]; robots ignore older ones.
     pub epoch: u64,
@@ -59,7 +61,8 @@ pub struct Announcement {
 /// a relayed one inside its [`Report`]. Valid for the tick after `tick`; a reader without it keeps
 /// the older one together with its tick and lets the controller decide.
 #[repr(C)]
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, ZeroCopySend)]
+#[type_name("vodca/Plan/1")]
 pub struct Plan {
     /// Run identity, as in [`Announcement::epoch`].
     pub epoch: u64,
@@ -79,7 +82,7 @@ pub struct Plan {
 
 /// Stamps of one robot's tick, ns, in the order in which they happen.
 #[repr(C)]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ZeroCopySend)]
 pub struct Stamps {
     /// The coordinator published the announcement.
     pub announced: u64,
@@ -98,7 +101,8 @@ pub struct Stamps {
 /// What a robot did in a tick. Published by the robot to the coordinator; without it the tick has
 /// no end and, past the deadline, the run has none of this robot.
 #[repr(C)]
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, ZeroCopySend)]
+#[type_name("vodca/Report/3")]
 pub struct Report {
     /// The plan (its tick and robot are the report's too).
     pub plan: Plan,
@@ -139,7 +143,8 @@ pub struct Report {
 /// What a policy is asked at a tick. Published by the coordinator before it announces `tick`; valid
 /// for that tick only. A server that misses it misses the tick.
 #[repr(C)]
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, ZeroCopySend)]
+#[type_name("vodca/Observation/1")]
 pub struct Observation {
     /// Run identity, as in [`Announcement::epoch`].
     pub epoch: u64,
@@ -156,7 +161,8 @@ pub struct Observation {
 /// What a policy answers. Published by the policy server; valid for `tick` only. The coordinator
 /// hands the horizons on with its [`Announcement`]; without them it takes older ones.
 #[repr(C)]
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, ZeroCopySend)]
+#[type_name("vodca/PolicyAnswer/2")]
 pub struct PolicyAnswer {
     /// As in the [`Observation`].
     pub epoch: u64,
@@ -190,6 +196,12 @@ pub mod answer {
     pub const NONE: u32 = 3;
     /// What the shadow would have chosen at `tick`.
     pub const SHADOW: u32 = 4;
+}
+
+impl Default for Announcement {
+    fn default() -> Self {
+        Self { epoch: 0, tick: 0, stamp: 0, order: 0, plans: 0, horizons: [0; MAX_ROBOTS] }
+    }
 }
 
 impl PolicyAnswer {
