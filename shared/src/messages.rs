@@ -293,8 +293,8 @@ impl Report {
             solve_ns: step.solve_ns,
             step_ns: step.step_ns,
             rows: step.rows,
-            level: step.level as u8,
-            status: step.status as u8,
+            level: step.level.number(),
+            status: step.status.number(),
             shielded: u8::from(step.shielded),
             horizon: step.horizon.steps() as u8,
             ..Report::presence(epoch, robot, kind::STEP, step.next_measured)
@@ -312,8 +312,8 @@ impl Report {
             next_measured: Position::from(self.next_measured),
             horizon: Horizon::new(u64::from(self.horizon)).ok()?,
             rows: self.rows,
-            level: level(self.level)?,
-            status: status(self.status)?,
+            level: Level::from_number(self.level)?,
+            status: Status::from_number(self.status)?,
             shielded: self.shielded == 1,
             plan,
             detect_ns: self.detect_ns,
@@ -321,18 +321,6 @@ impl Report {
             step_ns: self.step_ns,
         })
     }
-}
-
-fn level(number: u8) -> Option<Level> {
-    [Level::ClosedForm, Level::Structured, Level::Clarabel, Level::Fallback, Level::Baseline]
-        .into_iter()
-        .find(|level| *level as u8 == number)
-}
-
-fn status(number: u8) -> Option<Status> {
-    [Status::Solved, Status::Relaxed, Status::Held, Status::Shifted, Status::Stopped]
-        .into_iter()
-        .find(|status| *status as u8 == number)
 }
 
 #[cfg(test)]
