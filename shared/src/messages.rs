@@ -1,9 +1,10 @@
 //! Every payload that crosses a process border. Plain memory (`repr(C)`, no pointers): the reader
 //! sees the writer's bytes. Only a type's name and size are compared when a service is opened, so
-//! any change of a field needs a new number in the names given in `services.rs`.
+//! any change of a field needs a new number in its `type_name`.
 //!
 //! Stamps are nanoseconds of the host's monotonic clock, comparable between its processes.
 
+use iceoryx2::prelude::ZeroCopySend;
 use vodca::horizon::{Horizon, MAX_HORIZON};
 use vodca::prediction::Prediction;
 use vodca::step::{Level, Status, Step};
@@ -39,7 +40,8 @@ pub mod kind {
 /// In a relayed exchange `plans` plans of tick `tick - 1` follow it. A robot that misses it does
 /// nothing: the coordinator will miss its report.
 #[repr(C)]
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, ZeroCopySend)]
+#[type_name("vodca/Announcement/2")]
 pub struct Announcement {
     /// Which episode of this run it belongs to, from [`crate::team::FIRST_EPOCH`]; robots ignore older ones.
     pub epoch: u64,
@@ -59,7 +61,8 @@ pub struct Announcement {
 /// a relayed one inside its [`Report`]. Valid for the tick after `tick`; a reader without it keeps
 /// the older one together with its tick and lets the controller decide.
 #[repr(C)]
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, ZeroCopySend)]
+#[type_name("vodca/Plan/1")]
 pub struct Plan {
     /// Run identity, as in [`Announcement::epoch`].
     pub epoch: u64,
@@ -81,7 +84,7 @@ pub struct Plan {
 
 /// Stamps of one robot's tick, ns, in the order in which they happen.
 #[repr(C)]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ZeroCopySend)]
 pub struct Stamps {
     /// The coordinator published the announcement.
     pub announced: u64,
@@ -100,7 +103,8 @@ pub struct Stamps {
 /// What a robot did in a tick. Published by the robot to the coordinator; without it the tick has
 /// no end and, past the deadline, the run has none of this robot.
 #[repr(C)]
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, ZeroCopySend)]
+#[type_name("vodca/Report/3")]
 pub struct Report {
     /// The plan (its tick and robot are the report's too).
     pub plan: Plan,
@@ -141,7 +145,8 @@ pub struct Report {
 /// What a policy is asked at a tick. Published by the coordinator before it announces `tick`; valid
 /// for that tick only. A server that misses it misses the tick.
 #[repr(C)]
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, ZeroCopySend)]
+#[type_name("vodca/Observation/1")]
 pub struct Observation {
     /// Run identity, as in [`Announcement::epoch`].
     pub epoch: u64,
@@ -158,7 +163,8 @@ pub struct Observation {
 /// What a policy answers. Published by the policy server; valid for `tick` only. The coordinator
 /// hands the horizons on with its [`Announcement`]; without them it takes older ones.
 #[repr(C)]
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, ZeroCopySend)]
+#[type_name("vodca/PolicyAnswer/2")]
 pub struct PolicyAnswer {
     /// As in the [`Observation`].
     pub epoch: u64,
@@ -192,6 +198,12 @@ pub mod answer {
     pub const NONE: u32 = 3;
     /// What the shadow would have chosen at `tick`.
     pub const SHADOW: u32 = 4;
+}
+
+impl Default for Announcement {
+    fn default() -> Self {
+        Self { epoch: 0, tick: 0, stamp: 0, order: 0, plans: 0, horizons: [0; MAX_ROBOTS] }
+    }
 }
 
 impl PolicyAnswer {
@@ -286,8 +298,8 @@ impl Report {
             solve_ns: step.solve_ns,
             step_ns: step.step_ns,
             rows: step.rows,
-            level: step.level as u8,
-            status: step.status as u8,
+            level: step.level.number(),
+            status: step.status.number(),
             shielded: u8::from(step.shielded),
             horizon: step.horizon.steps() as u8,
             ..Report::presence(epoch, robot, kind::STEP, step.next_measured)
@@ -305,8 +317,8 @@ impl Report {
             next_measured: Position::from(self.next_measured),
             horizon: Horizon::new(u64::from(self.horizon)).ok()?,
             rows: self.rows,
-            level: level(self.level)?,
-            status: status(self.status)?,
+            level: Level::from_number(self.level)?,
+            status: Status::from_number(self.status)?,
             shielded: self.shielded == 1,
             plan,
             detect_ns: self.detect_ns,
@@ -314,18 +326,6 @@ impl Report {
             step_ns: self.step_ns,
         })
     }
-}
-
-fn level(number: u8) -> Option<Level> {
-    [Level::ClosedForm, Level::Structured, Level::Clarabel, Level::Fallback, Level::Baseline]
-        .into_iter()
-        .find(|level| *level as u8 == number)
-}
-
-fn status(number: u8) -> Option<Status> {
-    [Status::Solved, Status::Relaxed, Status::Held, Status::Shifted, Status::Stopped]
-        .into_iter()
-        .find(|status| *status as u8 == number)
 }
 
 #[cfg(test)]

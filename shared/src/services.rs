@@ -1,11 +1,12 @@
-//! The only place that knows iceoryx2: names, types and limits of every service, and thin typed ports.
+//! The only place that knows iceoryx2 (beside the derive on `messages.rs`): names, types and limits of
+//! every service, and thin typed ports.
 //!
 //! A run has its own prefix (of shared-memory files) and its own short root folder (of sockets, whose
 //! paths must stay below 108 bytes), see [`crate::place`]; two runs can therefore not meet.
 //! *Invariant*: the coordinator creates every service before a robot starts; robots only open. A
 //! service whose creator died half-way never heals, only deleting the run's files helps.
 
-use crate::messages::{Announcement, MAX_ROBOTS, Observation, Plan, PolicyAnswer, Report};
+use crate::messages::{Announcement, Plan, Report};
 use crate::place::Place;
 use iceoryx2::prelude::*;
 use iceoryx2::service::builder::event::EventOpenError;
@@ -56,38 +57,6 @@ fn failed(place: &Place, what: &str, which: &str, reason: impl Debug) -> Service
         what: format!("{what} {which}"),
         reason: format!("iceoryx2 says {reason:?}"),
         place: place.to_string(),
-    }
-}
-
-// SAFETY of these: `repr(C)`, only numbers and arrays of them, no pointers, no padding (tested).
-unsafe impl ZeroCopySend for Announcement {
-    unsafe fn type_name() -> &'static str {
-        "vodca/Announcement/2"
-    }
-}
-unsafe impl ZeroCopySend for Plan {
-    unsafe fn type_name() -> &'static str {
-        "vodca/Plan/1"
-    }
-}
-unsafe impl ZeroCopySend for Report {
-    unsafe fn type_name() -> &'static str {
-        "vodca/Report/3"
-    }
-}
-unsafe impl ZeroCopySend for Observation {
-    unsafe fn type_name() -> &'static str {
-        "vodca/Observation/1"
-    }
-}
-unsafe impl ZeroCopySend for PolicyAnswer {
-    unsafe fn type_name() -> &'static str {
-        "vodca/PolicyAnswer/2"
-    }
-}
-impl Default for Announcement {
-    fn default() -> Self {
-        Self { epoch: 0, tick: 0, stamp: 0, order: 0, plans: 0, horizons: [0; MAX_ROBOTS] }
     }
 }
 

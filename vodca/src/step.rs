@@ -40,6 +40,69 @@ pub enum Status {
     Stopped = 4,
 }
 
+impl Level {
+    /// All of them, by number.
+    pub const ALL: [Level; 5] =
+        [Level::ClosedForm, Level::Structured, Level::Clarabel, Level::Fallback, Level::Baseline];
+
+    /// Its word in every file; serde writes the same.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Level::ClosedForm => "closed_form",
+            Level::Structured => "structured",
+            Level::Clarabel => "clarabel",
+            Level::Fallback => "fallback",
+            Level::Baseline => "baseline",
+        }
+    }
+
+    /// The level of this word.
+    pub fn from_word(word: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|level| level.word() == word)
+    }
+
+    /// Its number in messages.
+    pub const fn number(self) -> u8 {
+        self as u8
+    }
+
+    /// The level of this number.
+    pub fn from_number(number: u8) -> Option<Self> {
+        Self::ALL.get(usize::from(number)).copied()
+    }
+}
+
+impl Status {
+    /// All of them, by number.
+    pub const ALL: [Status; 5] = [Status::Solved, Status::Relaxed, Status::Held, Status::Shifted, Status::Stopped];
+
+    /// Its word in every file; serde writes the same.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Status::Solved => "solved",
+            Status::Relaxed => "relaxed",
+            Status::Held => "held",
+            Status::Shifted => "shifted",
+            Status::Stopped => "stopped",
+        }
+    }
+
+    /// The status of this word.
+    pub fn from_word(word: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|status| status.word() == word)
+    }
+
+    /// Its number in messages.
+    pub const fn number(self) -> u8 {
+        self as u8
+    }
+
+    /// The status of this number.
+    pub fn from_number(number: u8) -> Option<Self> {
+        Self::ALL.get(usize::from(number)).copied()
+    }
+}
+
 /// What one robot did in one tick.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Step {
@@ -72,4 +135,27 @@ pub struct Step {
     pub solve_ns: u64,
     /// Time of the whole step, from having all messages to having moved, ns. Not part of what is compared.
     pub step_ns: u64,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_and_numbers_lead_back_and_serde_writes_the_same_words() {
+        for level in Level::ALL {
+            assert_eq!(
+                (Level::from_word(level.word()), Level::from_number(level.number())),
+                (Some(level), Some(level))
+            );
+            assert_eq!(serde_json::to_value(level).unwrap(), level.word());
+        }
+        for status in Status::ALL {
+            assert_eq!(Status::from_word(status.word()), Some(status));
+            assert_eq!(Status::from_number(status.number()), Some(status));
+            assert_eq!(serde_json::to_value(status).unwrap(), status.word());
+        }
+        assert_eq!((Level::from_number(5), Status::from_number(255)), (None, None));
+        assert_eq!((Level::from_word("Structured"), Status::from_word("")), (None, None));
+    }
 }

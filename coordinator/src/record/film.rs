@@ -11,7 +11,6 @@
 //! message types. The published descriptors lie beside this file and go into every log, the messages
 //! are in `foxglove.rs`, what is drawn with them in `scene.rs`; Foxglove's own Python decoder reads them back.
 
-use super::trajectory::{level_word, status_word};
 use super::{foxglove, scene};
 use serde_json::json;
 use vodca::params::Params;
@@ -92,7 +91,7 @@ fn team_values(scenario: &Scenario, tick: u64, steps: &[Step]) -> serde_json::Va
                 "x": step.position.x, "y": step.position.y, "ux": step.input.x, "uy": step.input.y,
                 "distance": (robot.set_point - step.position).norm(),
                 "horizon": step.horizon, "rows": step.rows,
-                "level": level_word(step.level), "status": status_word(step.status), "shielded": step.shielded,
+                "level": step.level.word(), "status": step.status.word(), "shielded": step.shielded,
             })
         })
         .collect();

@@ -9,7 +9,7 @@ use super::folder::{GrowingFile, RecordError};
 use std::fmt::Write as _;
 use std::path::PathBuf;
 use vodca::Position;
-use vodca::step::{Level, Status, Step};
+use vodca::step::Step;
 
 /// Name of the file in a run folder.
 pub const FILE: &str = "trajectory.csv";
@@ -52,7 +52,7 @@ pub fn push_tick(text: &mut String, tick: u64, steps: &[Step]) {
     for (robot, step) in steps.iter().enumerate() {
         let (x, y) = (step.position.x, step.position.y);
         let (ux, uy) = (step.input.x, step.input.y);
-        let (level, status) = (level_word(step.level), status_word(step.status));
+        let (level, status) = (step.level.word(), step.status.word());
         // Writing to a String cannot fail.
         let _ = writeln!(text, "{tick},{robot},{x},{y},{ux},{uy},{},{},{level},{status}", step.horizon, step.rows);
     }
@@ -62,28 +62,6 @@ pub fn push_tick(text: &mut String, tick: u64, steps: &[Step]) {
 pub fn push_end(text: &mut String, tick: u64, positions: &[Position]) {
     for (robot, position) in positions.iter().enumerate() {
         let _ = writeln!(text, "{tick},{robot},{},{},,,,,,", position.x, position.y);
-    }
-}
-
-/// The word for a level in every file we write.
-pub fn level_word(level: Level) -> &'static str {
-    match level {
-        Level::ClosedForm => "closed_form",
-        Level::Structured => "structured",
-        Level::Clarabel => "clarabel",
-        Level::Fallback => "fallback",
-        Level::Baseline => "baseline",
-    }
-}
-
-/// The word for a status in every file we write.
-pub fn status_word(status: Status) -> &'static str {
-    match status {
-        Status::Solved => "solved",
-        Status::Relaxed => "relaxed",
-        Status::Held => "held",
-        Status::Shifted => "shifted",
-        Status::Stopped => "stopped",
     }
 }
 
@@ -109,16 +87,6 @@ mod tests {
         assert_eq!(lines[1], "0,0,0,0,1.5,0.25,3,0,closed_form,solved");
         assert_eq!(lines[4], "1,1,10.3,0.05,,,,,,");
         assert!(text.ends_with('\n') && lines.len() == 5);
-    }
-
-    #[test]
-    fn words_are_those_of_the_other_files() {
-        for level in [Level::ClosedForm, Level::Structured, Level::Clarabel, Level::Fallback, Level::Baseline] {
-            assert_eq!(serde_json::to_value(level).unwrap(), level_word(level));
-        }
-        for status in [Status::Solved, Status::Relaxed, Status::Held, Status::Shifted, Status::Stopped] {
-            assert_eq!(serde_json::to_value(status).unwrap(), status_word(status));
-        }
     }
 
     proptest! {

@@ -2,7 +2,6 @@
 
 use super::ViewError;
 use super::frame::{Frame, News, Slot};
-use crate::record::trajectory::{level_word, status_word};
 use ratatui::crossterm::cursor::{Hide, Show};
 use ratatui::crossterm::execute;
 use ratatui::crossterm::terminal::{EnterAlternateScreen, LeaveAlternateScreen};
@@ -103,8 +102,8 @@ fn draw(area: &mut ratatui::Frame<'_>, frame: &Frame, shown: &Shown) {
             step.horizon.to_string(),
             step.rows.to_string(),
             format!("{:.1}", step.solve_ns as f64 / 1e3),
-            level_word(step.level).into(),
-            status_word(step.status).into(),
+            step.level.word().into(),
+            step.status.word().into(),
         ])
     });
     let widths = [5, 10, 7, 4, 9, 11, 8].map(Constraint::Length);

@@ -6,9 +6,10 @@
 use super::hop::OwnedPlace;
 use super::links::{PATIENCE, read_slot, write_slot};
 use super::partner::{Partner, PartnerArgs};
+use super::system::{PLAN_WORDS, PlanPage, wait_until};
 use super::{BenchError, failed};
 use coordinator::latency::Latency;
-use shared::raw::{PLAN_WORDS, SharedPage, futex_wake, wait_until};
+use shared::raw::futex_wake;
 use std::hint::black_box;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
@@ -28,7 +29,7 @@ const IDLE: Duration = Duration::from_secs(120);
 
 /// Processes that do nothing but exchange plans.
 pub(super) struct FloorTeam {
-    page: SharedPage,
+    page: PlanPage,
     members: Vec<Partner>,
     tick: u32,
     _place: OwnedPlace,
@@ -39,7 +40,7 @@ impl FloorTeam {
     pub(super) fn start(members: usize) -> Result<Self, BenchError> {
         let place = OwnedPlace::create()?;
         let path = PathBuf::from(format!("/dev/shm/{}floor", place.0.prefix));
-        let page = SharedPage::create(&path, WORDS, 2 * members).map_err(failed("make a shared page"))?;
+        let page = PlanPage::create(&path, WORDS, 2 * members).map_err(failed("make a shared page"))?;
         let start = |member| Partner::start(PartnerArgs::Floor { page: path.clone(), members, member });
         let partners = (0..members).map(start).collect::<Result<Vec<_>, _>>()?;
         let all = |ready| ready as usize == members;
@@ -73,7 +74,7 @@ impl Drop for FloorTeam {
 
 /// One member, until it is stopped.
 pub(super) fn take_part(path: &Path, members: usize, member: usize) -> Result<(), BenchError> {
-    let page = SharedPage::open(path, WORDS, 2 * members).map_err(failed("open a shared page"))?;
+    let page = PlanPage::open(path, WORDS, 2 * members).map_err(failed("open a shared page"))?;
     let mut seen = page.word(TICK).load(Ordering::Acquire);
     answer(&page, READY, members);
     let mut plan = [0; PLAN_WORDS];
@@ -94,7 +95,7 @@ pub(super) fn take_part(path: &Path, members: usize, member: usize) -> Result<()
 }
 
 /// Counts one more; the last one wakes the coordinator.
-fn answer(page: &SharedPage, word: usize, members: usize) {
+fn answer(page: &PlanPage, word: usize, members: usize) {
     let word = page.word(word);
     if word.fetch_add(1, Ordering::AcqRel) + 1 == members as u32 {
         futex_wake(word, 1);

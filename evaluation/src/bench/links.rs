@@ -1,9 +1,10 @@
 //! The ways by which a message of the size of a plan gets from one process to another.
 
 use super::iceoryx_links::{Busy, EventFirst, EventSecond, TeamFirst, TeamSecond};
+use super::system::{EventFd, PLAN_WORDS, PlanPage, wait_until};
 use super::{BenchError, failed};
 use shared::place::Place;
-use shared::raw::{EventFd, PLAN_WORDS, SharedPage, futex_wake, wait_until};
+use shared::raw::futex_wake;
 use shared::services::{PolicyAsker, PolicyPort, Services};
 use std::os::unix::net::UnixDatagram;
 use std::path::{Path, PathBuf};
@@ -88,8 +89,8 @@ pub(super) fn link(kind: LinkKind, place: &Place, end: End) -> Result<(Box<dyn L
     let page = || {
         let path = PathBuf::from(format!("/dev/shm/{}page", place.prefix));
         match end {
-            End::First => SharedPage::create(&path, 2, 2).map_err(failed("make a shared page")),
-            End::Second(_) => SharedPage::open(&path, 2, 2).map_err(failed("open a shared page")),
+            End::First => PlanPage::create(&path, 2, 2).map_err(failed("make a shared page")),
+            End::Second(_) => PlanPage::open(&path, 2, 2).map_err(failed("open a shared page")),
         }
     };
     let me = usize::from(end != End::First);
@@ -147,7 +148,7 @@ enum Waiting {
 
 /// A slot and a counter per direction in a shared page.
 struct Paged {
-    page: SharedPage,
+    page: PlanPage,
     me: usize,
     seen: u32,
     waiting: Waiting,

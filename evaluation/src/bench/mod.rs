@@ -26,6 +26,7 @@ mod scale;
 mod step;
 mod still;
 mod stored;
+mod system;
 mod tables;
 mod teams;
 mod ticks;

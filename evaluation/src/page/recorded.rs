@@ -1,6 +1,5 @@
 //! Reads a run's folder back for its page. A run that was cut gives what it recorded.
 
-use coordinator::record::trajectory::{level_word, status_word};
 use coordinator::record::{PARAMS_FILE, SCENARIO_FILE, SUMMARY_FILE, about, latency, mcap, trajectory};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -97,9 +96,6 @@ fn read_step(line: &str, set_point: Position, sample_time: f64) -> Option<Step> 
     let number = |n: usize| fields.get(n)?.parse::<f64>().ok();
     let position = Position::new(number(2)?, number(3)?);
     let input = Input::new(number(4)?, number(5)?);
-    const LEVELS: [Level; 5] =
-        [Level::ClosedForm, Level::Structured, Level::Clarabel, Level::Fallback, Level::Baseline];
-    const STATUSES: [Status; 5] = [Status::Solved, Status::Relaxed, Status::Held, Status::Shifted, Status::Stopped];
     let next_position = position + input * sample_time;
     Some(Step {
         position,
@@ -109,8 +105,8 @@ fn read_step(line: &str, set_point: Position, sample_time: f64) -> Option<Step> 
         next_measured: next_position,
         horizon: Horizon::new(fields.get(6)?.parse().ok()?).ok()?,
         rows: fields.get(7)?.parse().ok()?,
-        level: LEVELS.into_iter().find(|&level| Some(&level_word(level)) == fields.get(8))?,
-        status: STATUSES.into_iter().find(|&status| Some(&status_word(status)) == fields.get(9))?,
+        level: Level::from_word(fields.get(8)?)?,
+        status: Status::from_word(fields.get(9)?)?,
         shielded: false,
         plan: Prediction::roll_out(position, set_point, sample_time, &[input]),
         detect_ns: 0,
