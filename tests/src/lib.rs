@@ -1,6 +1,8 @@
 //! Helpers for tests of whole runs: build the programs once, start a run, wait with a watchdog, and
 //! make sure that it left nothing behind.
 
+pub mod fence;
+
 use std::collections::BTreeMap;
 use std::fs::{self, File};
 use std::os::unix::fs::PermissionsExt;
@@ -14,6 +16,11 @@ use tempfile::TempDir;
 /// Longer than anything here takes on a busy machine: what is still running then hangs.
 pub const WATCHDOG: Duration = Duration::from_secs(90);
 
+/// The repository's root.
+pub fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
 /// Where the release binary `name` is; all are built at the first call.
 pub fn program(name: &str) -> PathBuf {
     static PROGRAMS: OnceLock<BTreeMap<String, PathBuf>> = OnceLock::new();
@@ -24,7 +31,7 @@ pub fn program(name: &str) -> PathBuf {
 fn build() -> BTreeMap<String, PathBuf> {
     let output = Command::new(env!("CARGO"))
         .args(["build", "--release", "--bins", "--message-format=json", "-p", "agent", "-p", "cli", "-p", "tests"])
-        .current_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join(".."))
+        .current_dir(root())
         .stderr(Stdio::inherit())
         .output()
         .expect("cargo is there");
@@ -75,7 +82,7 @@ pub struct Finished {
 }
 
 impl Run {
-    /// Starts `coordinator run ARGUMENTS` with a folder of its own.
+    /// Starts `vodca run ARGUMENTS` in the repository's root, with a folder of its own.
     pub fn start(robots: Robots, arguments: &str) -> Self {
         let home = tempfile::tempdir().expect("a folder for the test");
         let folder = home.path().join("run");
@@ -88,6 +95,7 @@ impl Run {
             .args(["run", "--out"])
             .arg(&folder)
             .args(arguments.split_whitespace())
+            .current_dir(root())
             .stdin(Stdio::null())
             .stdout(file("stdout"))
             .stderr(file("stderr"))

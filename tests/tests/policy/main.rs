@@ -4,6 +4,7 @@
 
 mod bench;
 mod compared;
+mod fence;
 mod killed;
 mod picked_up;
 mod rollouts;

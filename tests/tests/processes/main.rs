@@ -4,6 +4,7 @@ mod bench;
 mod by_hand;
 mod check_solver;
 mod crash;
+mod fence;
 mod full_disk;
 mod golden;
 mod hang;
