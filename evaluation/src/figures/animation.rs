@@ -46,7 +46,8 @@ pub(super) fn animation(setting: &Setting, film: &Film, title: &str) -> String {
     }
     let foot = height + FOOT - 9.0;
     line(&mut body, format_args!("<text x=\"10\" y=\"{foot:.0}\">{}</text>", escaped(title)));
-    let bar: Vec<String> = shown(film).map(|tick| format!("{:.0}", width * tick as f64 / film.ticks.len() as f64)).collect();
+    let bar: Vec<String> =
+        shown(film).map(|tick| format!("{:.0}", width * tick as f64 / film.ticks.len() as f64)).collect();
     line(
         &mut body,
         format_args!(
@@ -69,7 +70,12 @@ fn draw_robot(body: &mut String, film: &Film, frame: &Frame, robot: usize, half:
     let still = (STILL * film.ticks.len() as f64) as usize;
     let places: Vec<[f64; 2]> = shown(film).map(|tick| frame.at(place(film, robot, tick))).collect();
     let [x, y] = frame.at(entry.set_point);
-    line(body, format_args!("<circle class=\"w\" cx=\"{x:.0}\" cy=\"{y:.0}\" r=\"{radius:.1}\" fill=\"none\" stroke=\"{colour}\"/>"));
+    line(
+        body,
+        format_args!(
+            "<circle class=\"w\" cx=\"{x:.0}\" cy=\"{y:.0}\" r=\"{radius:.1}\" fill=\"none\" stroke=\"{colour}\"/>"
+        ),
+    );
     // The way so far: one path, of which a growing part is drawn.
     let mut path = String::from("M");
     let mut way = vec![0.0];
@@ -208,7 +214,10 @@ mod tests {
         let robot = &film.scenario.robots[0];
         let (xs, ys) = (values("cx"), values("cy"));
         assert_eq!(xs.len(), film.ticks.len() + REST);
-        assert_eq!([&xs[0], &ys[0]].map(|text| text.parse::<f64>().unwrap()), frame.at(robot.start).map(|at| (at * 10.0).round() / 10.0));
+        assert_eq!(
+            [&xs[0], &ys[0]].map(|text| text.parse::<f64>().unwrap()),
+            frame.at(robot.start).map(|at| (at * 10.0).round() / 10.0)
+        );
         let end = [&xs, &ys].map(|list| list.last().unwrap().parse::<f64>().unwrap());
         let wanted = frame.at(robot.set_point);
         let off = (end[0] - wanted[0]).hypot(end[1] - wanted[1]) / SCALE;

@@ -84,7 +84,12 @@ impl Params {
         let refused = |refusal| OverlayError::Refused { origin: "the parameters together".into(), refusal };
         // Every key and type was checked against the table, whose words a test compares with the structs.
         let mut params: Params = overlay.tree.try_into().map_err(|error: toml::de::Error| {
-            refused(Refusal { key: "params", value: error.to_string(), allowed: "see docs/PARAMETERS.md".into(), unit: "-" })
+            refused(Refusal {
+                key: "params",
+                value: error.to_string(),
+                allowed: "see docs/PARAMETERS.md".into(),
+                unit: "-",
+            })
         })?;
         let given = |key: &str| overlay.given.contains(&key);
         if given("model.min_separation") && !given("cell.separation") {
