@@ -16,14 +16,18 @@ Examples:
   ./run.sh results
   ./run.sh results --list
   ./run.sh results --measure suite/quality
+  ./run.sh results --take suite/random=runs/20260131-120000-compare/runs.csv
 Without --measure it only writes the tables of README.md and docs/RESULTS.md, between their marks, from results/.
 Every part of results/ is made by a command of results/parts.toml; medians are kept, runs are not: they repeat.")]
 pub struct Args {
     /// Runs the command of a part anew and keeps its medians (repeatable)
     #[arg(long, value_name = "PART")]
     measure: Vec<String>,
+    /// Keeps the medians of runs that are there: the CSV file of an earlier compare or evaluate (repeatable)
+    #[arg(long, value_name = "PART=FILE", value_parser = part_and_file)]
+    take: Vec<(String, PathBuf)>,
     /// Lists the parts with their commands
-    #[arg(long, conflicts_with = "measure")]
+    #[arg(long, conflicts_with_all = ["measure", "take"])]
     list: bool,
     /// The folder of the repository
     #[arg(long, value_name = "DIR", default_value = ".")]
@@ -47,22 +51,33 @@ pub fn run(args: Args) -> Ending {
         }
         return Ok(Outcome::Done);
     }
-    let find = |name: &String| {
-        all.iter().find(|part| part.name == *name).ok_or_else(|| {
+    let find = |name: &str| {
+        all.iter().find(|part| part.name == name).ok_or_else(|| {
             let known = all.iter().map(|part| part.name.as_str()).collect::<Vec<_>>().join(", ");
-            Failure::usage(NoPart { name: name.clone(), known })
+            Failure::usage(NoPart { name: name.into(), known })
         })
     };
-    let wanted = args.measure.iter().map(find).collect::<Result<Vec<_>, _>>()?;
+    let wanted = args.measure.iter().map(|name| find(name)).collect::<Result<Vec<_>, _>>()?;
+    for (name, file) in &args.take {
+        keep(&args.root, find(name)?, &medians_of(file)?)?;
+    }
     for part in wanted {
-        let path = args.root.join(FOLDER).join(format!("{}.csv", part.name));
-        let medians = measure(part)?;
-        replace(&path, medians.csv().as_bytes()).map_err(Failure::broken)?;
-        stdout::line(format_args!("{} rows in {}", medians.rows().len(), path.display()))?;
+        keep(&args.root, part, &measure(part)?)?;
     }
     let count = write_documents(&args.root).map_err(Failure::broken)?;
     stdout::line(format_args!("{count} tables in {}", DOCUMENTS.join(", ")))?;
     Ok(Outcome::Done)
+}
+
+fn part_and_file(text: &str) -> Result<(String, PathBuf), String> {
+    let (part, file) = text.split_once('=').ok_or("write PART=FILE, for example suite/random=runs.csv")?;
+    Ok((part.into(), file.into()))
+}
+
+fn keep(root: &Path, part: &Part, medians: &Medians) -> Result<(), Failure> {
+    let path = root.join(FOLDER).join(format!("{}.csv", part.name));
+    replace(&path, medians.csv().as_bytes()).map_err(Failure::broken)?;
+    Ok(stdout::line(format_args!("{} rows in {}", medians.rows().len(), path.display()))?)
 }
 
 /// Runs the command of `part` into a folder of its own and takes the medians of its runs.
@@ -73,8 +88,13 @@ fn measure(part: &Part) -> Result<Medians, Failure> {
     let command = words.chain(["--out"]).map(Into::into).chain([out.clone().into_os_string()]);
     Cli::try_parse_from(command).map_err(Failure::usage)?.run()?;
     let file = if out.is_dir() { out.join("runs.csv") } else { out };
-    let runs = std::fs::read_to_string(&file).map_err(Failure::broken)?;
-    Medians::of_runs(&runs).map_err(|reason| Failure::broken(format!("{}: {reason}", part.name)))
+    medians_of(&file)
+}
+
+fn medians_of(file: &Path) -> Result<Medians, Failure> {
+    let broken = |reason: String| Failure::broken(format!("{}: {reason}", file.display()));
+    let runs = std::fs::read_to_string(file).map_err(|error| broken(error.to_string()))?;
+    Medians::of_runs(&runs).map_err(broken)
 }
 
 fn write_documents(root: &Path) -> Result<usize, Box<dyn Error + Send + Sync>> {

@@ -7,7 +7,7 @@ use crate::text_table::TextTable;
 use std::path::Path;
 
 /// The family of rows over all layouts.
-pub const ALL: &str = "all";
+pub(super) const ALL: &str = "all";
 /// Figures of which the spread over successful runs is kept, where the runs have them.
 const FIGURES: [&str; 4] = ["ratio", "ticks", "time_s", "path_m"];
 const DIGITS: usize = 4;
@@ -26,7 +26,7 @@ pub struct Spread {
 /// Runs of one controller in one family of layouts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
-    /// Family of layouts, or [`ALL`]; of `evaluate` the largest move of starts, m.
+    /// Family of layouts, or `all`; of `evaluate` the largest move of starts, m.
     pub family: String,
     /// The controller; of `evaluate` where horizons came from.
     pub controller: String,

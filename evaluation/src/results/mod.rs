@@ -15,7 +15,7 @@ pub use document::{DOCUMENTS, filled};
 pub use medians::{Medians, Row, Spread};
 pub use parts::{Part, parts};
 
-use crate::text_table::TextTable;
+use crate::bench::{self, StoredError};
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -33,6 +33,9 @@ pub enum ResultsError {
         /// What the system said.
         source: io::Error,
     },
+    /// The benchmark's files.
+    #[error(transparent)]
+    Latency(#[from] StoredError),
     /// A file that holds something else.
     #[error("{}: {reason}; write it anew with ./run.sh results --measure PART", path.display())]
     Malformed {
@@ -61,8 +64,8 @@ pub enum ResultsError {
     },
 }
 
-/// A table and the name by which documents ask for it.
-pub type NamedTable = (String, TextTable);
+/// The name by which documents ask for a table, and its Markdown.
+pub type NamedTable = (String, String);
 
 /// All tables that `root/results` gives.
 ///
@@ -70,10 +73,21 @@ pub type NamedTable = (String, TextTable);
 /// A file that is missing or holds something else.
 pub fn tables(root: &Path) -> Result<Vec<NamedTable>, ResultsError> {
     let mut tables = suite::tables(root)?;
-    tables.push(("policies".into(), policies::table(root)?));
+    tables.push(("policies".into(), policies::table(root)?.markdown()));
     tables.extend(paper::tables(root)?);
     tables.extend(training::tables(root)?);
+    tables.push(("latency".into(), latency(root)?));
     Ok(tables)
+}
+
+/// The tables of the benchmark, each below what it shows.
+fn latency(root: &Path) -> Result<String, ResultsError> {
+    let folder = root.join(FOLDER).join("latency");
+    if !folder.join("rows.csv").is_file() {
+        return Ok("Nothing is measured yet: `./run.sh bench all --out results/latency`.\n".into());
+    }
+    let section = |section: bench::Section| format!("{}\n\n{}", section.caption, section.table);
+    Ok(bench::sections(&folder)?.into_iter().map(section).collect::<Vec<_>>().join("\n"))
 }
 
 fn read(path: &Path) -> Result<String, ResultsError> {

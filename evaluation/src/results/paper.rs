@@ -10,16 +10,17 @@ use std::path::Path;
 /// Horizons of a line of `results/paper/reference.csv`, written `5`, `10..49` or `random`.
 fn is_of(row: &Row, horizons: &str) -> bool {
     let own = row.controller.rsplit("fixed:").next().unwrap_or_default();
-    match (own.parse::<u8>(), horizons.split_once("..")) {
-        (Ok(own), Some((from, to))) => from.parse() <= Ok(own) && Ok(own) <= to.parse(),
-        (Ok(own), None) => horizons.parse() == Ok(own),
-        (Err(_), _) => row.controller.ends_with(horizons),
+    let number = |text: &str| text.parse::<u8>().ok();
+    match (number(own), horizons.split_once("..")) {
+        (Some(own), Some((from, to))) => number(from) <= Some(own) && Some(own) <= number(to),
+        (Some(own), None) => number(horizons) == Some(own),
+        (None, _) => row.controller.ends_with(horizons),
     }
 }
 
 pub(super) fn tables(root: &Path) -> Result<[NamedTable; 2], ResultsError> {
     let folder = root.join(FOLDER).join("paper");
-    Ok([("paper".into(), claims(&folder)?), ("symmetry".into(), symmetry(&folder)?)])
+    Ok([("paper".into(), claims(&folder)?.markdown()), ("symmetry".into(), symmetry(&folder)?.markdown())])
 }
 
 fn claims(folder: &Path) -> Result<TextTable, ResultsError> {

@@ -36,12 +36,12 @@ pub(super) fn tables(root: &Path) -> Result<Vec<NamedTable>, ResultsError> {
     let quality = suite("quality")?;
     let families: Vec<&str> = quality.families().into_iter().chain([ALL]).collect();
     let mut tables = vec![
-        ("summary".to_string(), beside(&quality, &SHORT, &["orca-best", "orca-rh"])),
-        ("suite".into(), beside(&quality, &families, &OTHERS.map(|(name, _)| name))),
-        ("targets".into(), targets(root, &quality, &suite("large_rings")?)?),
+        ("summary".to_string(), beside(&quality, &SHORT, &["orca-best", "orca-rh"]).markdown()),
+        ("suite".into(), beside(&quality, &families, &OTHERS.map(|(name, _)| name)).markdown()),
+        ("targets".into(), targets(root, &quality, &suite("large_rings")?)?.markdown()),
     ];
     for name in ["robustness", "random", "ablations", "patience"] {
-        tables.push((name.into(), totals(&suite(name)?)));
+        tables.push((name.into(), totals(&suite(name)?).markdown()));
     }
     Ok(tables)
 }

@@ -11,7 +11,7 @@ const NAMES: [&str; 4] = ["two_setpoint", "four_gate", "exchange_14", "ring_8"];
 
 pub(super) fn tables(root: &Path) -> Result<[NamedTable; 2], ResultsError> {
     let folder = root.join(FOLDER).join("training");
-    Ok([("training".into(), curves(&folder)?), ("updates".into(), updates(&folder)?)])
+    Ok([("training".into(), curves(&folder)?.markdown()), ("updates".into(), updates(&folder)?.markdown())])
 }
 
 fn curves(folder: &Path) -> Result<TextTable, ResultsError> {
