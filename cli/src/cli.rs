@@ -1,7 +1,8 @@
 //! The command line: one subcommand per file of `commands/`.
 
 use crate::commands::{
-    bench, compare, evaluate, figures, former, golden, params, replay, report, rollout, run, scenario, search, verify,
+    bench, compare, evaluate, figures, former, golden, params, replay, report, results, rollout, run, scenario, search,
+    verify,
 };
 use crate::exit::{Ending, Failure, Outcome};
 use clap::{Parser, Subcommand};
@@ -55,6 +56,8 @@ enum Command {
     Scenario(scenario::Args),
     /// List all parameters: value, unit, range, effect
     Params(params::Args),
+    /// Write the tables of the documents anew from results/, or measure a part of it anew
+    Results(results::Args),
     /// Measure latencies and times beside their floors and beside others
     Bench(bench::Args),
     /// Another process of a benchmark (started by `bench`, not by people)
@@ -79,6 +82,7 @@ impl Cli {
             Command::Figures(args) => figures::run(args),
             Command::Scenario(args) => scenario::run(args),
             Command::Params(args) => params::run(args),
+            Command::Results(args) => results::run(args),
             Command::Bench(args) => bench::run(args),
             Command::Partner(args) => partner::run(args).map(|()| Outcome::Done).map_err(Failure::broken),
         }

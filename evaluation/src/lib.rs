@@ -10,6 +10,7 @@ pub mod page;
 pub mod parallel;
 pub mod range;
 pub mod replay;
+pub mod results;
 #[cfg(test)]
 pub(crate) mod samples;
 pub mod search;

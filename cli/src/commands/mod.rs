@@ -10,6 +10,7 @@ pub mod length;
 pub mod params;
 pub mod replay;
 pub mod report;
+pub mod results;
 pub mod rollout;
 pub mod run;
 pub mod run_policy;
