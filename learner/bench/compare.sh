@@ -4,7 +4,7 @@
 # PyTorch: python3 -m venv DIR && DIR/bin/pip install torch numpy, then PYTHON is DIR/bin/python.
 set -eu
 root=$(cd "$(dirname "$0")/../.." && pwd)
-csv=${1:-$root/bench-runs/2026-11-22-learner/updates.csv}
+csv=${1:-$root/results/training/updates.csv}
 rounds=${2:-5}
 python=${3:-python3}
 learner=${CARGO_TARGET_DIR:-$root/target}/release/learner

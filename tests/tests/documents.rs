@@ -1,9 +1,15 @@
-//! The documents are true: every message has its entry, every command is accepted, every link leads somewhere.
+//! The documents are true: every command is accepted, every link leads somewhere, every page and every rule that is
+//! named exists.
 
 use clap::Parser;
 use cli::cli::Cli;
 use std::fs;
 use std::path::{Path, PathBuf};
+
+/// Pages that programs write, not pages of the repository.
+const WRITTEN: [&str; 1] = ["table.md"];
+/// Folders that hold nothing of the repository's own.
+const FOREIGN: [&str; 5] = ["target", ".git", "runs", "trainings", "rollouts"];
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
@@ -13,114 +19,26 @@ fn read(path: &Path) -> String {
     fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
-/// Every Rust file of every member's `src`, the tests' own excepted.
-fn sources() -> Vec<PathBuf> {
-    let mut waiting: Vec<PathBuf> = fs::read_dir(root())
-        .expect("the workspace is there")
-        .map(|entry| entry.expect("it can be read").path())
-        .filter(|path| path.join("Cargo.toml").is_file() && !path.ends_with("tests"))
-        .map(|path| path.join("src"))
-        .collect();
-    let mut files = Vec::new();
-    while let Some(path) = waiting.pop() {
-        if path.is_dir() {
-            waiting.extend(fs::read_dir(&path).expect("a folder").map(|entry| entry.expect("it can be read").path()));
-        } else if path.extension().is_some_and(|extension| extension == "rs") {
-            files.push(path);
-        }
-    }
-    files
-}
-
-/// The literals of all `#[error("...")]` above the unit tests of a file.
-fn messages(source: &str) -> Vec<String> {
-    let source = source.split("#[cfg(test)]\nmod tests {").next().unwrap_or_default();
-    let attributes = source.split("#[error(").skip(1).map(str::trim_start);
-    attributes.filter_map(|attribute| attribute.strip_prefix('"')).map(literal).collect()
-}
-
-/// The string literal that starts behind its opening quote.
-fn literal(text: &str) -> String {
-    let (mut value, mut characters) = (String::new(), text.chars().peekable());
-    while let Some(character) = characters.next() {
-        match character {
-            '"' => break,
-            '\\' if characters.peek() == Some(&'\n') => {
-                while characters.next_if(|next| next.is_whitespace()).is_some() {}
-            }
-            '\\' => value.extend(characters.next()),
-            other => value.push(other),
-        }
-    }
-    value
-}
-
-/// The longest piece of a message between its placeholders; `None` when it has no words of its own
-/// (it hands on a message that has its own entry).
-fn stem(message: &str) -> Option<&str> {
-    let pieces = message.split(['{', '}']).step_by(2).flat_map(|piece| piece.split(['`', '"'])).map(str::trim);
-    pieces.max_by_key(|piece| piece.len()).filter(|piece| piece.chars().filter(|c| c.is_alphabetic()).count() >= 4)
-}
-
-#[test]
-fn stems_are_the_longest_words_between_placeholders() {
-    let source = "#[error(\n    \"cannot {what}: it \\\n     says \\\"no\\\" {}\", x.y())]\n#[error(transparent)]\n#[error(\"{a}: {b}\")]";
-    let found = messages(source);
-    assert_eq!(found, ["cannot {what}: it says \"no\" {}", "{a}: {b}"]);
-    assert_eq!((stem(&found[0]), stem(&found[1])), (Some(": it says"), None));
-}
-
-#[test]
-fn every_error_message_has_its_entry() {
-    let entries: String = read(&root().join("TROUBLESHOOTING.md")).replace('`', "");
-    let (mut found, mut missing) = (0, Vec::new());
-    for file in sources() {
-        for message in messages(&read(&file)) {
-            let Some(stem) = stem(&message) else { continue };
-            found += 1;
-            // Separators at the ends belong to what the placeholders say.
-            let words = stem.trim_matches(|c: char| !c.is_alphanumeric() && c != '[' && c != ']' && c != '/');
-            if !entries.contains(words) {
-                missing.push(format!("{}: {words}", file.display()));
+/// Every file of the repository with this ending.
+fn files(ending: &str) -> Vec<PathBuf> {
+    let (mut waiting, mut found) = (vec![root()], Vec::new());
+    while let Some(folder) = waiting.pop() {
+        for entry in fs::read_dir(&folder).expect("a folder") {
+            let path = entry.expect("an entry").path();
+            let foreign = path.file_name().is_some_and(|name| FOREIGN.iter().any(|foreign| name == *foreign));
+            if path.is_dir() && !foreign {
+                waiting.push(path);
+            } else if path.extension().is_some_and(|extension| extension == ending) {
+                found.push(path);
             }
         }
     }
-    assert!(found >= 40, "only {found} messages were found: the scan is broken");
-    assert!(missing.is_empty(), "write an entry in TROUBLESHOOTING.md that contains:\n{}", missing.join("\n"));
+    found.sort();
+    found
 }
 
-#[test]
-fn every_message_of_the_front_door_has_its_entry() {
-    let (script, entries) = (read(&root().join("run.sh")), read(&root().join("TROUBLESHOOTING.md")));
-    let messages: Vec<&str> = script.split("echo \"").skip(1).filter(|text| text.starts_with("error: ")).collect();
-    assert!(messages.len() >= 2, "the scan is broken");
-    for message in messages {
-        let stem = message.split([';', '"']).next().unwrap_or_default();
-        assert!(entries.contains(stem), "write an entry in TROUBLESHOOTING.md that contains: {stem}");
-    }
-}
-
-#[test]
-fn every_entry_has_a_cause_and_a_next_step() {
-    let text = read(&root().join("TROUBLESHOOTING.md"));
-    for entry in text.split("\n### ").skip(1) {
-        let body = entry.split("\n## ").next().unwrap_or_default();
-        assert!(body.contains("\nCause: ") && body.contains("\nNext: "), "{body}");
-    }
-}
-
-fn documents() -> Vec<PathBuf> {
-    let mut documents: Vec<PathBuf> = fs::read_dir(root())
-        .expect("the workspace is there")
-        .map(|entry| entry.expect("it can be read").path())
-        .filter(|path| path.extension().is_some_and(|extension| extension == "md"))
-        .collect();
-    documents.push(root().join("scenarios/README.md"));
-    documents
-}
-
-/// The arguments that `run.sh` hands to the coordinator; `None` for what it does itself or hands to the
-/// policy server or the learner (whose heavy builds this test does not need).
+/// The arguments that `run.sh` hands to the program `vodca`; `None` for what it does itself or hands to the policy
+/// server or the learner (whose heavy builds this test does not need).
 fn arguments(line: &str) -> Option<Vec<String>> {
     let command = line.trim().strip_prefix("./run.sh ")?.split(" #").next()?;
     let mut words: Vec<String> = command.split_whitespace().map(str::to_owned).collect();
@@ -138,7 +56,7 @@ fn arguments(line: &str) -> Option<Vec<String>> {
 #[test]
 fn every_documented_command_is_accepted() {
     let mut tried = 0;
-    for document in documents() {
+    for document in files("md") {
         let text = read(&document);
         let blocks = text.split("```").skip(1).step_by(2).flat_map(str::lines);
         let spans = text.lines().flat_map(|line| line.split('`').skip(1).step_by(2));
@@ -160,14 +78,85 @@ fn every_documented_command_is_accepted() {
 
 #[test]
 fn every_link_leads_to_a_file() {
-    for document in documents() {
+    let mut followed = 0;
+    for document in files("md") {
         let text = read(&document);
-        for link in text.split("](").skip(1).filter_map(|rest| rest.split([')', '#']).next()) {
-            if link.is_empty() || link.contains("://") {
-                continue;
-            }
+        let links = text.split("](").skip(1).filter_map(|rest| rest.split([')', '#']).next());
+        let pictures = text.split("src=\"").skip(1).filter_map(|rest| rest.split('"').next());
+        for link in links.chain(pictures).filter(|link| !link.is_empty() && !link.contains("://")) {
             let target = document.with_file_name("").join(link);
             assert!(target.exists(), "{}: there is no {link}", document.display());
+            followed += 1;
         }
+    }
+    assert!(followed >= 10, "only {followed} links were found: the scan is broken");
+}
+
+/// The pages that a text names: `NAME.md`, perhaps with folders before it.
+fn pages(text: &str) -> impl Iterator<Item = &str> {
+    let is_part = |c: char| c.is_ascii_alphanumeric() || "/._-".contains(c);
+    let words = text.split(move |c| !is_part(c)).map(|word| word.trim_end_matches('.'));
+    words.filter(|word| word.strip_suffix(".md").is_some_and(|stem| !stem.is_empty() && !stem.ends_with('/')))
+}
+
+#[test]
+fn pages_are_found_among_words() {
+    let text = "/// as `docs/A.md` says (b.md, rule 1), not in c.mdx or .md. See ../d.md.";
+    assert_eq!(pages(text).collect::<Vec<_>>(), ["docs/A.md", "b.md", "../d.md"]);
+}
+
+#[test]
+fn every_page_that_a_comment_or_a_document_names_is_in_the_repository() {
+    let known = files("md");
+    let comments = files("rs").into_iter().map(|file| {
+        let text = read(&file);
+        let lines = text.lines().filter_map(|line| line.split_once("//").map(|(_, comment)| comment.to_string()));
+        (file, lines.collect::<Vec<_>>().join("\n"))
+    });
+    let documents = known.iter().map(|file| (file.clone(), read(file)));
+    let mut named = 0;
+    for (file, text) in comments.chain(documents) {
+        if file.ends_with("tests/documents.rs") {
+            continue; // it names pages that do not exist
+        }
+        for page in pages(&text).filter(|page| !WRITTEN.contains(page)) {
+            named += 1;
+            let end = page.trim_start_matches("../");
+            assert!(
+                known.iter().any(|path| path.ends_with(end)),
+                "{} names {page}, which is not there",
+                file.display()
+            );
+        }
+    }
+    assert!(named >= 10, "only {named} pages were found: the scan is broken");
+}
+
+#[test]
+fn every_rule_that_a_comment_cites_is_numbered_in_the_architecture() {
+    let text = read(&root().join("docs/ARCHITECTURE.md"));
+    let (_, rules) = text.split_once("## The rules of the safe profile").expect("the rules have a section");
+    let section = rules.split("\n## ").next().unwrap_or_default();
+    let numbered = |number: &str| section.lines().any(|line| line.starts_with(&format!("{number}. **")));
+    let mut cited = 0;
+    for file in files("rs") {
+        let text = read(&file);
+        for rest in text.split("ARCHITECTURE, rule").skip(1) {
+            let numbers = rest.trim_start_matches('s').split(')').next().unwrap_or_default();
+            for number in numbers.split(|c: char| !c.is_ascii_digit()).filter(|number| !number.is_empty()) {
+                assert!(numbered(number), "{} cites rule {number}", file.display());
+                cited += 1;
+            }
+        }
+    }
+    assert!(cited >= 10, "only {cited} citations were found: the scan is broken");
+}
+
+#[test]
+fn every_entry_of_troubleshooting_has_a_cause_and_a_next_step() {
+    let text = read(&root().join("docs/TROUBLESHOOTING.md"));
+    for entry in text.split("\n### ").skip(1) {
+        let body = entry.split("\n## ").next().unwrap_or_default();
+        assert!(body.contains("\nCause: ") && body.contains("\nNext: "), "{body}");
     }
 }

@@ -1,4 +1,4 @@
-//! The measured QPs as JSON, for other solvers (`bench-runs/peers.py` reads them).
+//! The measured QPs as JSON, for other solvers (`results/latency/peers.py` reads them).
 
 use super::BenchError;
 use coordinator::record::RecordError;

@@ -10,7 +10,8 @@ use std::path::Path;
 pub(super) const ALL: &str = "all";
 /// Figures of which the spread over successful runs is kept, where the runs have them.
 const FIGURES: [&str; 4] = ["ratio", "ticks", "time_s", "path_m"];
-const DIGITS: usize = 4;
+/// More than any table shows, so that nothing is rounded twice.
+const DIGITS: usize = 6;
 
 /// Median, least and most of a figure over the runs that succeeded.
 #[derive(Clone, Copy, Debug, PartialEq)]

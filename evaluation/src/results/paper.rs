@@ -58,7 +58,13 @@ fn here(rows: &[&Row]) -> String {
             .and_then(|row| row.controller.rsplit(':').next())
             .map(|best| format!("; best FH{best}")),
     };
-    format!("{complete}, {short:.1}..{long:.1} m, {quick:.0}..{slow:.0} ticks{}", more.unwrap_or_default())
+    let path = between([format!("{short:.1}"), format!("{long:.1}")]);
+    let ticks = between([format!("{quick:.0}"), format!("{slow:.0}")]);
+    format!("{complete}, {path} m, {ticks} ticks{}", more.unwrap_or_default())
+}
+
+fn between([from, to]: [String; 2]) -> String {
+    if from == to { from } else { format!("{from}..{to}") }
 }
 
 /// Fourteen robots with 1e-9 m of measuring noise: what each fixed horizon gives over seeds.
@@ -90,7 +96,7 @@ mod tests {
             t,paper:random,true,12,2,18,1,1,0\nt,paper:random,true,14,2,22,1,1,0\n";
         let medians = Medians::of_runs(text).unwrap();
         let text = |horizons| here(&medians.rows().iter().filter(|row| is_of(row, horizons)).collect::<Vec<_>>());
-        assert_eq!(text("5"), "1 of 1 complete, 20.0..20.0 m, 10..10 ticks");
+        assert_eq!(text("5"), "1 of 1 complete, 20.0 m, 10 ticks");
         assert_eq!(text("5..49"), "2 of 3 complete, 19.0..20.0 m, 10..11 ticks; best FH20");
         assert_eq!(text("random"), "2 of 2 complete, 18.0..22.0 m, 12..14 ticks; median 20.0 m");
         assert_eq!(text("15"), "0 of 1 complete");
