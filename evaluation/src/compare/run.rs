@@ -108,9 +108,7 @@ impl Job {
         let build = if self.check_solver { Team::checked } else { Team::new };
         let mut team = build(scenario, params, scenario.seed);
         let metrics = match &self.source {
-            Source::Table(source) => {
-                drive(&mut team, scenario, params, &mut source.clone(), on_tick).map_err(halt)?
-            }
+            Source::Table(source) => drive(&mut team, scenario, params, &mut source.clone(), on_tick).map_err(halt)?,
             Source::Policy(policy) => {
                 let mut client = match servers.iter().position(|client| client.policy() == policy) {
                     Some(at) => servers.remove(at),
