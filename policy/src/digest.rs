@@ -5,7 +5,12 @@ use sha2::{Digest, Sha256};
 
 /// Lower-case hexadecimal SHA-256 of `bytes`, 64 characters.
 pub fn sha256(bytes: &[u8]) -> String {
-    hex(&Sha256::digest(bytes))
+    hex(&sha256_of(bytes))
+}
+
+/// SHA-256 of `bytes`.
+pub fn sha256_of(bytes: &[u8]) -> [u8; 32] {
+    Sha256::digest(bytes).into()
 }
 
 #[cfg(test)]

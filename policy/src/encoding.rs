@@ -12,6 +12,24 @@ pub fn sha256_bytes(digits: &str) -> Option<[u8; 32]> {
     HEXLOWER.decode(digits.as_bytes()).ok()?.try_into().ok()
 }
 
+/// For `#[serde(with)]`: a SHA-256 as its digits, or nothing.
+pub mod sha256_digits {
+    use serde::de::{Deserialize, Deserializer, Error};
+    use serde::ser::{Serialize, Serializer};
+
+    /// Writes the digits.
+    pub fn serialize<S: Serializer>(digest: &Option<[u8; 32]>, serializer: S) -> Result<S::Ok, S::Error> {
+        digest.as_ref().map(|digest| super::hex(digest)).serialize(serializer)
+    }
+
+    /// Reads the digits.
+    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<[u8; 32]>, D::Error> {
+        let Some(digits) = Option::<String>::deserialize(deserializer)? else { return Ok(None) };
+        let digest = super::sha256_bytes(&digits);
+        digest.map(Some).ok_or_else(|| D::Error::custom("a SHA-256 has 64 lower-case hexadecimal digits"))
+    }
+}
+
 /// Base64 with padding (RFC 4648).
 pub fn base64(bytes: &[u8]) -> String {
     BASE64.encode(bytes)

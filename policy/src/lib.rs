@@ -10,6 +10,7 @@ pub mod folder;
 pub mod onnx;
 pub mod reward;
 pub mod rollout;
+pub mod session;
 pub mod settings;
 pub mod tensor_file;
 

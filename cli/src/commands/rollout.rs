@@ -9,10 +9,11 @@ use crate::stdout;
 use coordinator::policy::PolicyOptions;
 use coordinator::record::RecordError;
 use coordinator::record::RunFolder;
-use coordinator::rollout::{Orders, Played, Recorder, Until, Written};
+use coordinator::rollout::{Orders, Recorder, Until};
 use coordinator::run::{Options, Outcome, Run};
 use evaluation::text_table::TextTable;
 use policy::rollout::{About, SCHEMA};
+use policy::session::{Played, RoundReport, to_line};
 use shared::stop::StopFlag;
 use shared::team::Episodes;
 use std::path::PathBuf;
@@ -44,7 +45,7 @@ pub struct Args {
     /// Number of the first episode: seeds follow from it
     #[arg(long, value_name = "N", default_value_t = 0)]
     first: u64,
-    /// Read rounds from standard input, `NUMBER EPISODES [SHA256]` a line, and write a shard for each
+    /// Read rounds from standard input, `{"round": 0, "episodes": 10, "policy": "SHA256"}` a line, and write a shard for each
     #[arg(long, conflicts_with = "episodes")]
     rounds_from_stdin: bool,
     /// Begin again with the first episode after so many: an evaluation
@@ -123,13 +124,14 @@ pub fn run(args: Args) -> Ending {
     let progress = Progress::of_work(if args.rounds_from_stdin { 0 } else { args.episodes as usize });
     let mut all: Vec<Played> = Vec::new();
     let (mut seconds, mut trouble) = (0.0, None);
-    let mut written = |shard: &Written| -> Result<(), RecordError> {
-        shard.played.iter().for_each(|_| progress.advance());
-        seconds += shard.seconds;
+    let mut written = |report: &RoundReport| -> Result<(), RecordError> {
+        report.episodes.iter().for_each(|_| progress.advance());
+        seconds += report.seconds;
         if args.rounds_from_stdin {
-            trouble = trouble.take().or(stdout::line(round_line(shard)).err());
+            let line = to_line(report).map_err(|error| RecordError::Rollout { reason: error.to_string() })?;
+            trouble = trouble.take().or(stdout::line(line).err());
         } else {
-            all.extend(&shard.played); // a trainer's session may go on for days
+            all.extend(&report.episodes); // a trainer's session may go on for days
         }
         Ok(())
     };
@@ -187,21 +189,6 @@ fn about(args: &Args, scenario: &Scenario, policy: Option<&PolicyOptions>) -> Ab
         max_ticks: scenario.max_ticks,
         policy_sha256: String::new(),
     }
-}
-
-/// One line of JSON per shard, for the program that asked for it.
-fn round_line(shard: &Written) -> String {
-    let played: Vec<_> = shard
-        .played
-        .iter()
-        .map(|one| {
-            serde_json::json!({
-                "episode": one.episode, "ticks": one.ticks, "return": one.total, "success": one.success,
-                "arrived_tick": one.arrived_tick, "path": one.path,
-            })
-        })
-        .collect();
-    serde_json::json!({ "shard": shard.path, "seconds": shard.seconds, "episodes": played }).to_string()
 }
 
 /// What was played, in one row.

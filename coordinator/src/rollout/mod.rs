@@ -2,7 +2,7 @@
 
 mod orders;
 
-pub use orders::{Orders, Round};
+pub use orders::Orders;
 
 use crate::horizons::RunHorizons;
 use crate::record::RecordError;
@@ -10,40 +10,13 @@ use crate::run::{Episode, EpisodeDriver, RunTick};
 use crate::team::ProcessTeam;
 use policy::reward::{Judgement, Reward};
 use policy::rollout::{About, Row, Shard};
+use policy::session::{Played, RoundOrder, RoundReport};
 use std::path::PathBuf;
 use std::time::Instant;
 use vodca::horizon_source::Horizons;
 use vodca::metrics::RunMetrics;
 use vodca::params::Params;
 use vodca::play::{Observer, Verdict};
-
-/// What became of an episode.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Played {
-    /// Its number.
-    pub episode: u64,
-    /// Ticks played.
-    pub ticks: u64,
-    /// Sum of R over them.
-    pub total: f64,
-    /// Whether everybody had arrived at its end and nobody had collided.
-    pub success: bool,
-    /// Ticks until everybody had arrived; all of them without success.
-    pub arrived_tick: u64,
-    /// Sum of the paths until then, m.
-    pub path: f64,
-}
-
-/// A round that was played.
-#[derive(Clone, Debug)]
-pub struct Written {
-    /// Its shard, if one is kept.
-    pub path: Option<PathBuf>,
-    /// Its episodes.
-    pub played: Vec<Played>,
-    /// From its first tick to its last, s.
-    pub seconds: f64,
-}
 
 /// When an episode ends that nothing else ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -64,8 +37,8 @@ pub struct Recorder<'a> {
     /// Folder of the shards; `None`: nothing is kept.
     out: Option<PathBuf>,
     until: Until,
-    written: &'a mut dyn FnMut(&Written) -> Result<(), RecordError>,
-    round: Round,
+    written: &'a mut dyn FnMut(&RoundReport) -> Result<(), RecordError>,
+    round: RoundOrder,
     shard: Shard,
     played: Vec<Played>,
     started: Instant,
@@ -96,7 +69,7 @@ impl<'a> Recorder<'a> {
         mut orders: Orders,
         out: Option<PathBuf>,
         until: Until,
-        written: &'a mut dyn FnMut(&Written) -> Result<(), RecordError>,
+        written: &'a mut dyn FnMut(&RoundReport) -> Result<(), RecordError>,
     ) -> Option<Self> {
         let round = orders.take()?;
         Some(Self {
@@ -121,13 +94,14 @@ impl<'a> Recorder<'a> {
     fn write_round(&mut self) -> Result<(), RecordError> {
         let empty = Shard::new(self.shard.about.clone());
         let shard = std::mem::replace(&mut self.shard, empty);
-        let name = format!("{:06}.{}", self.round.number, policy::rollout::ENDING);
+        let name = format!("{:06}.{}", self.round.round, policy::rollout::ENDING);
         let path = self.out.as_ref().map(|out| out.join(name));
         if let Some(path) = &path {
             shard.write(path).map_err(|error| RecordError::Rollout { reason: error.to_string() })?;
         }
         let seconds = self.started.elapsed().as_secs_f64();
-        (self.written)(&Written { path, played: std::mem::take(&mut self.played), seconds })
+        let episodes = std::mem::take(&mut self.played);
+        (self.written)(&RoundReport { shard: path, seconds, episodes })
     }
 
     fn row(&mut self, tick: &RunTick<'_>, judgement: &Judgement, truncated: bool, number: u64) {
@@ -209,7 +183,7 @@ impl EpisodeDriver for Recorder<'_> {
             let (episode, ticks, total) = (now.number, summary.ticks, now.total);
             self.played.push(Played { episode, ticks, total, success, arrived_tick, path });
         }
-        if (self.played.len() as u64) < self.round.episodes {
+        if (self.played.len() as u64) < self.round.episodes.get() {
             return Ok(true);
         }
         self.write_round()?;

@@ -1,10 +1,10 @@
 //! How a training went, round by round: `train.csv`, and TensorBoard's event file.
 
 use super::score::Score;
-use super::session::Round;
 use super::state::State;
 use crate::Losses;
 use crate::tensorboard::{Curves, CurvesError};
+use policy::session::RoundReport;
 use std::fs::{File, OpenOptions};
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
@@ -47,7 +47,7 @@ impl Point {
         state: &State,
         updates: u64,
         learnt: (u64, Duration),
-        played: &Round,
+        played: &RoundReport,
         losses: Option<Losses>,
         evaluation: Option<Score>,
         took: Duration,

@@ -18,13 +18,15 @@ use crate::rollouts::{RolloutsError, remember_shard};
 use curve::{Curve, CurveError, Point};
 use plan::Plan;
 use policy::contract::{Contract, Observation};
-use policy::digest::sha256;
+use policy::digest::sha256_of;
 use policy::folder::{FolderError, PolicyFolder, resolve};
 use policy::rollout::{RolloutError, Shard};
+use policy::session::{RoundOrder, RoundReport};
 use score::Score;
-use session::{Round, Session, SessionError};
+use session::{Session, SessionError};
 use shared::stop::StopFlag;
 use state::{Best, Lock, State, StateError};
+use std::num::NonZeroU64;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 use vodca::scenario::{Scenario, SetupError, set_up};
@@ -98,7 +100,7 @@ pub struct Trainer {
     contract: Contract,
     folder: PolicyFolder,
     /// SHA-256 of the newest published actor.
-    published: String,
+    published: [u8; 32],
     state: State,
     rollouts: Session,
     evaluation: Session,
@@ -120,7 +122,7 @@ impl Trainer {
         let mut trainer = Self::start(plan, out, learner, State::default(), &scenario, lock)?;
         let arguments = [trainer.rollout_arguments(0), ["--horizon".into(), "random".into()].into()].concat();
         let mut warm_up = Session::start(&arguments, &out.join("warm-up"))?;
-        warm_up.order(0, trainer.plan.warm_up_episodes, None)?;
+        warm_up.order(&order(0, trainer.plan.warm_up_episodes, None))?;
         let Some(round) = warm_up.answer(stop)? else { return Ok(None) };
         trainer.take(&round)?;
         trainer.checkpoint()?; // whatever ends the first rounds, the warm-up need not be played again
@@ -213,7 +215,7 @@ impl Trainer {
     fn round(&mut self) -> Result<Point, TrainError> {
         let start = Instant::now();
         let number = self.state.round;
-        self.rollouts.order(number, self.plan.round_episodes, Some(&self.published))?;
+        self.rollouts.order(&order(number, self.plan.round_episodes, Some(self.published)))?;
         let owed = (self.state.ticks_of_last_round as f64 * self.plan.updates_per_tick + self.state.owed).max(0.0);
         let updates = owed.floor() as u64;
         self.state.owed = owed - updates as f64;
@@ -245,7 +247,7 @@ impl Trainer {
     }
 
     /// Remembers what was played, and removes its shard.
-    fn take(&mut self, round: &Round) -> Result<(), TrainError> {
+    fn take(&mut self, round: &RoundReport) -> Result<(), TrainError> {
         self.state.ticks_of_last_round = round.ticks();
         self.state.ticks += round.ticks();
         let Some(path) = &round.shard else { return Ok(()) };
@@ -273,7 +275,7 @@ impl Trainer {
 
     /// Plays the evaluation with the newest actor; keeps it when it is the best so far.
     fn evaluate(&mut self) -> Result<Score, TrainError> {
-        self.evaluation.order(self.state.round, self.plan.evaluation_episodes, Some(&self.published))?;
+        self.evaluation.order(&order(self.state.round, self.plan.evaluation_episodes, Some(self.published)))?;
         let round = self.evaluation.whole_answer()?;
         let score = Score::of(&round.episodes);
         let better = self.state.best.as_ref().is_none_or(|best| score.beats(&best.score, self.plan.most_ticks));
@@ -342,12 +344,17 @@ fn contract(plan: &Plan, layouts: &[Scenario]) -> Contract {
     contract
 }
 
-fn digest_of(folder: &PolicyFolder) -> Result<String, TrainError> {
+/// Of no episodes there is no order; a plan allows none.
+fn order(round: u64, episodes: u64, policy: Option<[u8; 32]>) -> RoundOrder {
+    RoundOrder { round, episodes: NonZeroU64::new(episodes).unwrap_or(NonZeroU64::MIN), policy }
+}
+
+fn digest_of(folder: &PolicyFolder) -> Result<[u8; 32], TrainError> {
     let path = resolve(folder.root())?;
     let bytes = std::fs::read(&path).map_err(|source| FolderError::Io {
         action: "read",
         path: path.display().to_string(),
         source,
     })?;
-    Ok(sha256(&bytes))
+    Ok(sha256_of(&bytes))
 }

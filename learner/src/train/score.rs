@@ -1,6 +1,6 @@
 //! How good an actor is by its evaluation, and which one is kept.
 
-use super::session::Played;
+use policy::session::Played;
 use serde::{Deserialize, Serialize};
 
 /// What an evaluation came to.

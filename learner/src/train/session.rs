@@ -1,7 +1,7 @@
 //! A team of robot processes that plays rounds of episodes for a trainer: a `rollout` session of the
 //! coordinator, told what to do line by line.
 
-use serde::Deserialize;
+use policy::session::{RoundOrder, RoundReport, from_line, to_line};
 use shared::stop::StopFlag;
 use std::fs::File;
 use std::io::{BufRead, BufReader, Write};
@@ -64,42 +64,6 @@ pub enum SessionError {
     },
 }
 
-/// One episode as the coordinator tells it.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
-pub struct Played {
-    /// Its number.
-    pub episode: u64,
-    /// Ticks played.
-    pub ticks: u64,
-    /// Sum of R over them.
-    #[serde(rename = "return")]
-    pub total: f64,
-    /// Whether everybody arrived and nobody collided.
-    pub success: bool,
-    /// Ticks until everybody had arrived; all of them without success.
-    pub arrived_tick: u64,
-    /// Path of all robots until then, m.
-    pub path: f64,
-}
-
-/// A round that was played.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-pub struct Round {
-    /// The shard of its transitions, unless they are discarded.
-    pub shard: Option<PathBuf>,
-    /// How long it took, s.
-    pub seconds: f64,
-    /// Its episodes.
-    pub episodes: Vec<Played>,
-}
-
-impl Round {
-    /// Ticks of all its episodes.
-    pub fn ticks(&self) -> u64 {
-        self.episodes.iter().map(|episode| episode.ticks).sum()
-    }
-}
-
 /// A running session; ended when dropped.
 pub struct Session {
     child: Child,
@@ -148,19 +112,22 @@ impl Session {
         Ok(Self { child, orders, answers, folder: folder.to_owned(), patience: PATIENCE })
     }
 
-    /// Orders `episodes` episodes as round `number`; with `policy`, the SHA-256 of an actor, once it acts.
-    pub fn order(&mut self, number: u64, episodes: u64, policy: Option<&str>) -> Result<(), SessionError> {
-        let line = format!("{number} {episodes} {}\n", policy.unwrap_or_default());
-        let episodes = u32::try_from(episodes).unwrap_or(u32::MAX);
+    /// Orders a round; with a policy it begins once that one acts.
+    pub fn order(&mut self, order: &RoundOrder) -> Result<(), SessionError> {
+        let episodes = u32::try_from(order.episodes.get()).unwrap_or(u32::MAX);
         self.patience = PATIENCE.saturating_add(EPISODE_PATIENCE.saturating_mul(episodes));
-        match self.orders.as_mut().map(|orders| orders.write_all(line.as_bytes()).and_then(|()| orders.flush())) {
+        let write = |orders: &mut ChildStdin| {
+            writeln!(orders, "{}", to_line(order)?)?;
+            orders.flush()
+        };
+        match self.orders.as_mut().map(write) {
             Some(Ok(())) => Ok(()),
             _ => Err(self.ended()),
         }
     }
 
     /// Waits for the round that was ordered; `None`: somebody asked to stop.
-    pub fn answer(&mut self, stop: &StopFlag) -> Result<Option<Round>, SessionError> {
+    pub fn answer(&mut self, stop: &StopFlag) -> Result<Option<RoundReport>, SessionError> {
         let begun = Instant::now();
         while !stop.is_set() {
             if let Some(round) = self.look()? {
@@ -172,7 +139,7 @@ impl Session {
     }
 
     /// Waits for the round that was ordered, whoever asks to stop.
-    pub fn whole_answer(&mut self) -> Result<Round, SessionError> {
+    pub fn whole_answer(&mut self) -> Result<RoundReport, SessionError> {
         let begun = Instant::now();
         loop {
             if let Some(round) = self.look()? {
@@ -183,9 +150,9 @@ impl Session {
     }
 
     /// Looks a little while for an answer.
-    fn look(&mut self) -> Result<Option<Round>, SessionError> {
+    fn look(&mut self) -> Result<Option<RoundReport>, SessionError> {
         match self.answers.recv_timeout(LOOK_AROUND) {
-            Ok(line) => match serde_json::from_str(&line) {
+            Ok(line) => match from_line(&line) {
                 Ok(round) => Ok(Some(round)),
                 Err(error) => {
                     let (folder, reason) = (self.folder.clone(), error.to_string());
@@ -231,21 +198,5 @@ impl Drop for Session {
         // Both fail only when it has ended.
         let _ = self.child.kill();
         let _ = self.child.wait();
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_the_coordinator_answers_is_understood() {
-        let line = r#"{"episodes":[{"arrived_tick":89,"episode":4,"path":44.25,"return":1200.5,"success":true,
-            "ticks":350}],"seconds":0.5,"shard":"out/000007.safetensors"}"#;
-        let round: Round = serde_json::from_str(line).unwrap();
-        assert_eq!((round.ticks(), round.episodes[0].arrived_tick, round.episodes[0].success), (350, 89, true));
-        assert_eq!(round.shard, Some(PathBuf::from("out/000007.safetensors")));
-        let discarded: Round = serde_json::from_str(r#"{"episodes":[],"seconds":0,"shard":null}"#).unwrap();
-        assert_eq!(discarded.shard, None);
     }
 }
