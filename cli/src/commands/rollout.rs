@@ -7,8 +7,7 @@ use crate::exit::{self, Ending, Failure};
 use crate::progress::Progress;
 use crate::stdout;
 use coordinator::policy::PolicyOptions;
-use coordinator::record::RecordError;
-use coordinator::record::RunFolder;
+use coordinator::record::{RecordError, RunFolder, write_setup};
 use coordinator::rollout::{Orders, Recorder, Until};
 use coordinator::run::{Options, Outcome, Run};
 use evaluation::text_table::TextTable;
@@ -102,7 +101,7 @@ pub fn run(args: Args) -> Ending {
     let out = RunFolder::at(&args.out).map_err(Failure::usage)?;
     // What a run needs in its folder lies beside the shards.
     let run = RunFolder::at(&out.file("session")).map_err(Failure::broken)?;
-    write_setup(&run, &scenario, &params)?;
+    write_setup(&run, &scenario, &params).map_err(Failure::broken)?;
     let options = options(&args, &scenario, &run, episodes)?;
     let about = about(&args, &scenario, options.policy.as_ref());
     let orders = match args.rounds_from_stdin {
@@ -145,13 +144,6 @@ pub fn run(args: Args) -> Ending {
         Outcome::PeerLost(lost) => Err(Failure::peer_lost(lost)),
         _ => Ok(exit::Outcome::Done),
     }
-}
-
-/// `scenario.toml` and `params.toml`: what the robots read.
-fn write_setup(run: &RunFolder, scenario: &Scenario, params: &Params) -> Result<(), Failure> {
-    let text = scenario.to_toml().map_err(Failure::broken)?;
-    run.write(shared::team::SCENARIO_FILE, text.as_bytes()).map_err(Failure::broken)?;
-    run.write(shared::team::PARAMS_FILE, params.to_toml().as_bytes()).map_err(Failure::broken)
 }
 
 fn options(args: &Args, scenario: &Scenario, run: &RunFolder, episodes: Episodes) -> Result<Options, Failure> {
