@@ -1,6 +1,7 @@
 //! `evaluate`: a policy beside everything simpler.
 
 use super::length::metres;
+use super::parameter_args::ParameterArgs;
 use super::search;
 use crate::exit::{Ending, Failure, Outcome};
 use crate::progress::Progress;
@@ -14,7 +15,6 @@ use shared::stop::StopFlag;
 use std::path::PathBuf;
 use vodca::horizon::{Horizon, MAX_HORIZON};
 use vodca::horizon_source::HorizonSpec;
-use vodca::params::Profile;
 use vodca::scenario::set_up;
 
 /// The paper's grid of fixed horizons.
@@ -42,12 +42,8 @@ pub struct Args {
     /// Scenario: file, built-in name, family or a range of layouts (box:8:3:0..19)
     #[arg(long, value_name = "FILE|NAME")]
     scenario: String,
-    /// Parameter set
-    #[arg(long, value_name = "NAME", default_value = "safe")]
-    profile: Profile,
-    /// Change a parameter (repeatable)
-    #[arg(long, value_name = "KEY=VALUE")]
-    set: Vec<String>,
+    #[command(flatten)]
+    parameters: ParameterArgs,
     /// Number of seeds, from --first-seed
     #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u64).range(1..=10_000))]
     seeds: u64,
@@ -110,7 +106,7 @@ pub fn run(args: Args) -> Ending {
             break;
         };
         let moved = if jitter > 0.0 { format!(" by up to {jitter} m, {} seeds", args.seeds) } else { String::new() };
-        stdout::line(format_args!("{} {}, {title}{moved}", args.scenario, args.profile))?;
+        stdout::line(format_args!("{} {}, {title}{moved}", args.scenario, args.parameters.profile))?;
         stdout::text(table(&rows(&experiment, &done, constants.as_ref())).aligned())?;
         stdout::line("")?;
         csv += &csv_of(jitter, &experiment, &done, csv.is_empty());
@@ -125,7 +121,8 @@ pub fn run(args: Args) -> Ending {
 /// The best constant horizons of the first layout.
 fn best_constants(args: &Args, entries: &[Entry], stop: &StopFlag) -> Result<Option<HorizonSpec>, Failure> {
     let Some(Entry { spec, .. }) = entries.first() else { return Ok(None) };
-    let (scenario, params) = set_up(Some(spec), None, args.profile, &args.set).map_err(Failure::usage)?;
+    let (scenario, params) =
+        set_up(Some(spec), None, args.parameters.profile, &args.parameters.set).map_err(Failure::usage)?;
     let generations = usize::from(args.generations);
     let progress = Progress::of_work(generations * POPULATION);
     let found = constants(&scenario, &params, generations, 0, stop, || progress.advance()).map_err(Failure::usage)?;
@@ -135,8 +132,10 @@ fn best_constants(args: &Args, entries: &[Entry], stop: &StopFlag) -> Result<Opt
 
 /// What is evaluated, in the order of the runs: the policy, horizons 1 to 49, the constants, random ones.
 fn experiment(args: &Args, entries: &[Entry], constants: Option<&HorizonSpec>, jitter: f64) -> Experiment {
-    let table = |name: &str, spec: HorizonSpec| ControllerSpec::new(name, args.profile, HorizonPart::Table(spec));
-    let mut controllers = vec![ControllerSpec::new(POLICY, args.profile, HorizonPart::Policy(args.policy.clone()))];
+    let table =
+        |name: &str, spec: HorizonSpec| ControllerSpec::new(name, args.parameters.profile, HorizonPart::Table(spec));
+    let mut controllers =
+        vec![ControllerSpec::new(POLICY, args.parameters.profile, HorizonPart::Policy(args.policy.clone()))];
     for steps in 1..=MAX_HORIZON {
         let horizon = Horizon::saturating(steps as i64);
         controllers.push(table(&format!("fixed:{steps}"), HorizonSpec::Fixed(vec![horizon])));
@@ -149,7 +148,7 @@ fn experiment(args: &Args, entries: &[Entry], constants: Option<&HorizonSpec>, j
         controllers,
         seeds: (args.first_seed..last).collect(),
         start_jitter: jitter,
-        sets: args.set.clone(),
+        sets: args.parameters.set.clone(),
         max_ticks: None,
         check_solver: false,
     }

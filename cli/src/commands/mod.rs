@@ -7,6 +7,7 @@ pub mod figures;
 pub mod former;
 pub mod golden;
 pub mod length;
+mod parameter_args;
 pub mod params;
 pub mod replay;
 pub mod report;

@@ -1,8 +1,9 @@
 //! `params`: all parameters with value, unit, range and effect.
 
+use super::parameter_args::ParameterArgs;
 use crate::exit::{Ending, Failure, Outcome};
 use crate::stdout;
-use vodca::params::{Params, Profile, table};
+use vodca::params::{Params, table};
 
 /// Arguments of `params`.
 #[derive(Debug, clap::Args)]
@@ -11,17 +12,14 @@ Examples:
   ./run.sh params
   ./run.sh params --profile paper --set vodca.rows=each")]
 pub struct Args {
-    /// Parameter set: safe, paper, orca or orca-rh
-    #[arg(long, default_value = "safe")]
-    profile: Profile,
-    /// Change a parameter (repeatable)
-    #[arg(long, value_name = "KEY=VALUE")]
-    set: Vec<String>,
+    #[command(flatten)]
+    parameters: ParameterArgs,
 }
 
 /// Prints the list.
 pub fn run(args: Args) -> Ending {
-    let params = Params::resolve(args.profile, "-", &toml::Table::new(), &args.set).map_err(Failure::usage)?;
+    let params = Params::resolve(args.parameters.profile, "-", &toml::Table::new(), &args.parameters.set)
+        .map_err(Failure::usage)?;
     stdout::text(table::listing(&params))?;
     Ok(Outcome::Done)
 }

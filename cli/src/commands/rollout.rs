@@ -1,14 +1,13 @@
 //! `rollout`: episodes for a learner.
 
 use super::length::metres;
-use super::run::Exchange;
+use super::parameter_args::{ParameterArgs, TeamArgs};
 use super::run_policy::PolicyArgs;
 use crate::exit::{self, Ending, Failure};
 use crate::progress::Progress;
 use crate::stdout;
 use coordinator::policy::PolicyOptions;
-use coordinator::record::RecordError;
-use coordinator::record::RunFolder;
+use coordinator::record::{RecordError, RunFolder, write_setup};
 use coordinator::rollout::{Orders, Recorder, Until};
 use coordinator::run::{Options, Outcome, Run};
 use evaluation::text_table::TextTable;
@@ -19,7 +18,7 @@ use shared::team::Episodes;
 use std::path::PathBuf;
 use std::time::Duration;
 use vodca::horizon_source::{HorizonSource, HorizonSpec};
-use vodca::params::{Params, Profile};
+use vodca::params::Params;
 use vodca::scenario::{Scenario, set_up};
 
 /// What marks a family: every episode has a layout of its own.
@@ -65,24 +64,16 @@ pub struct Args {
     policy: Option<PathBuf>,
     #[command(flatten)]
     use_policy: PolicyArgs,
-    /// Parameter set: safe, paper, orca or orca-rh
-    #[arg(long, value_name = "NAME", default_value = "safe")]
-    profile: Profile,
-    /// Change a parameter (repeatable)
-    #[arg(long, value_name = "KEY=VALUE")]
-    set: Vec<String>,
-    /// How plans are exchanged; left out: peer up to 20 robots, relay above
-    #[arg(long)]
-    exchange: Option<Exchange>,
+    #[command(flatten)]
+    parameters: ParameterArgs,
+    #[command(flatten)]
+    team: TeamArgs,
     /// Seed of everything random
     #[arg(long, default_value_t = 0)]
     seed: u64,
     /// Move every start by up to so much per axis, m
     #[arg(long, value_name = "METRES", default_value_t = 0.0, value_parser = metres)]
     start_jitter: f64,
-    /// Last tick, instead of the scenario's
-    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
-    max_ticks: Option<u64>,
     /// Cut an episode off so many ticks after everybody has arrived; left out: play on to the last tick, as in the paper
     #[arg(long, value_name = "TICKS")]
     after_arrival: Option<u64>,
@@ -94,9 +85,10 @@ pub fn run(args: Args) -> Ending {
     let family = args.scenario.strip_suffix(ANY_SEED);
     // Of a family any layout tells the number of robots and the parameters.
     let spec = family.map_or(args.scenario.clone(), |family| format!("{family}:0"));
-    let (mut scenario, params) = set_up(Some(&spec), None, args.profile, &args.set).map_err(Failure::usage)?;
+    let (mut scenario, params) =
+        set_up(Some(&spec), None, args.parameters.profile, &args.parameters.set).map_err(Failure::usage)?;
     scenario.seed = args.seed;
-    scenario.max_ticks = args.max_ticks.unwrap_or(scenario.max_ticks);
+    scenario.max_ticks = args.team.max_ticks.unwrap_or(scenario.max_ticks);
     HorizonSource::new(&args.horizon, scenario.robots.len(), args.seed, params.horizon.jitter)
         .map_err(Failure::usage)?;
     let episodes = Episodes {
@@ -109,7 +101,7 @@ pub fn run(args: Args) -> Ending {
     let out = RunFolder::at(&args.out).map_err(Failure::usage)?;
     // What a run needs in its folder lies beside the shards.
     let run = RunFolder::at(&out.file("session")).map_err(Failure::broken)?;
-    write_setup(&run, &scenario, &params)?;
+    write_setup(&run, &scenario, &params).map_err(Failure::broken)?;
     let options = options(&args, &scenario, &run, episodes)?;
     let about = about(&args, &scenario, options.policy.as_ref());
     let orders = match args.rounds_from_stdin {
@@ -154,19 +146,12 @@ pub fn run(args: Args) -> Ending {
     }
 }
 
-/// `scenario.toml` and `params.toml`: what the robots read.
-fn write_setup(run: &RunFolder, scenario: &Scenario, params: &Params) -> Result<(), Failure> {
-    let text = scenario.to_toml().map_err(Failure::broken)?;
-    run.write(shared::team::SCENARIO_FILE, text.as_bytes()).map_err(Failure::broken)?;
-    run.write(shared::team::PARAMS_FILE, params.to_toml().as_bytes()).map_err(Failure::broken)
-}
-
 fn options(args: &Args, scenario: &Scenario, run: &RunFolder, episodes: Episodes) -> Result<Options, Failure> {
     let mut options = Options::new(run.path(), scenario).map_err(Failure::broken)?;
     options.horizons = args.horizon.clone();
     options.seed = args.seed;
     options.episodes = episodes;
-    options.exchange = args.exchange.map_or(options.exchange, Into::into);
+    options.exchange = args.team.exchange().unwrap_or(options.exchange);
     if args.rounds_from_stdin {
         options.idle = Duration::from_secs(3600); // a trainer may take its time; robots end with us anyway
     }
@@ -182,7 +167,7 @@ fn about(args: &Args, scenario: &Scenario, policy: Option<&PolicyOptions>) -> Ab
         schema: SCHEMA.into(),
         scenario: args.scenario.clone(),
         robots: scenario.robots.len(),
-        profile: args.profile.to_string(),
+        profile: args.parameters.profile.to_string(),
         horizons: if policy.is_some() { policy::rollout::POLICY.into() } else { args.horizon.to_string() },
         seed: args.seed,
         start_jitter: args.start_jitter,

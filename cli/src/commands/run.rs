@@ -1,5 +1,6 @@
 //! `run`: a team with one process per robot.
 
+use super::parameter_args::{ParameterArgs, TeamArgs};
 use super::run_policy::PolicyArgs;
 use crate::commands::report as page;
 use crate::exit::{self, Ending, Failure};
@@ -21,7 +22,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 use vodca::horizon_source::{HorizonSource, HorizonSpec};
 use vodca::metrics::RunMetrics;
-use vodca::params::{Params, Profile};
+use vodca::params::Params;
 use vodca::play::Verdict;
 use vodca::scenario::{Scenario, set_up};
 
@@ -52,12 +53,10 @@ pub struct Args {
     policy: Option<PathBuf>,
     #[command(flatten)]
     use_policy: PolicyArgs,
-    /// Parameter set: safe, paper, orca or orca-rh
-    #[arg(long, value_name = "NAME", default_value = "safe")]
-    profile: Profile,
-    /// How plans are exchanged; left out: peer up to 20 robots, relay above
-    #[arg(long)]
-    exchange: Option<Exchange>,
+    #[command(flatten)]
+    parameters: ParameterArgs,
+    #[command(flatten)]
+    team: TeamArgs,
     /// Seed of everything random, instead of the scenario's
     #[arg(long)]
     seed: Option<u64>,
@@ -67,12 +66,6 @@ pub struct Args {
     /// One tick per sample time instead of as fast as everybody answers
     #[arg(long)]
     real_time: bool,
-    /// Last tick, instead of the scenario's
-    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
-    max_ticks: Option<u64>,
-    /// Change a parameter (repeatable), e.g. vodca.rows=each; `params` lists them
-    #[arg(long, value_name = "KEY=VALUE")]
-    set: Vec<String>,
     /// Write the run's page for a browser as soon as it has ended, as `report` does
     #[arg(long)]
     report: bool,
@@ -98,31 +91,15 @@ fn number_of_robots(text: &str) -> Result<usize, String> {
     text.parse().map_err(|_| format!("`{text}` is not a number of robots; write a whole number in 1..={MAX_ROBOTS}"))
 }
 
-#[derive(Clone, Copy, Debug, clap::ValueEnum)]
-pub(super) enum Exchange {
-    /// Every robot to every robot
-    Peer,
-    /// Through the coordinator
-    Relay,
-}
-
-impl From<Exchange> for Kind {
-    fn from(exchange: Exchange) -> Self {
-        match exchange {
-            Exchange::Peer => Self::Peer,
-            Exchange::Relay => Self::Relay,
-        }
-    }
-}
-
 /// Runs the team and reports.
 pub fn run(args: Args) -> Ending {
     let stop = StopFlag::install().map_err(Failure::broken)?;
     let (mut scenario, params) =
-        set_up(args.scenario.as_deref(), args.robots, args.profile, &args.set).map_err(Failure::usage)?;
+        set_up(args.scenario.as_deref(), args.robots, args.parameters.profile, &args.parameters.set)
+            .map_err(Failure::usage)?;
     params.warnings().iter().for_each(|warning| tracing::warn!("{warning}"));
     scenario.seed = args.seed.unwrap_or(scenario.seed);
-    scenario.max_ticks = args.max_ticks.unwrap_or(scenario.max_ticks);
+    scenario.max_ticks = args.team.max_ticks.unwrap_or(scenario.max_ticks);
     // Whether there are horizons for all is said before anything is made.
     HorizonSource::new(&args.horizon, scenario.robots.len(), scenario.seed, params.horizon.jitter)
         .map_err(Failure::usage)?;
@@ -156,8 +133,8 @@ fn options(args: &Args, scenario: &Scenario, folder: &RunFolder) -> Result<Optio
     let mut options = Options::new(folder.path(), scenario).map_err(Failure::broken)?;
     options.horizons = args.horizon.clone();
     options.real_time = args.real_time;
-    if let Some(exchange) = args.exchange {
-        options.exchange = exchange.into();
+    if let Some(exchange) = args.team.exchange() {
+        options.exchange = exchange;
     }
     if args.by_hand {
         options.agents = Agents::ByHand;
@@ -179,7 +156,7 @@ fn about(args: &Args, scenario: &Scenario, exchange: Kind) -> About {
         version: 1,
         scenario: scenario.name.clone(),
         robots: scenario.robots.len(),
-        profile: args.profile.to_string(),
+        profile: args.parameters.profile.to_string(),
         horizon: source_of_horizons(args),
         seed: scenario.seed,
         exchange: match exchange {

@@ -1,12 +1,12 @@
 //! `search`: the best constant horizon per robot.
 
+use super::parameter_args::ParameterArgs;
 use crate::exit::{Ending, Failure, Outcome};
 use crate::progress::Progress;
 use crate::stdout;
 use evaluation::search::{Found, POPULATION, constants};
 use shared::stop::StopFlag;
 use vodca::horizon_source::HorizonSpec;
-use vodca::params::Profile;
 use vodca::scenario::set_up;
 
 /// Arguments of `search`.
@@ -20,12 +20,8 @@ pub struct Args {
     /// Scenario: file, built-in name or family
     #[arg(long, value_name = "FILE|NAME")]
     scenario: String,
-    /// Parameter set
-    #[arg(long, value_name = "NAME", default_value = "safe")]
-    profile: Profile,
-    /// Change a parameter (repeatable)
-    #[arg(long, value_name = "KEY=VALUE")]
-    set: Vec<String>,
+    #[command(flatten)]
+    parameters: ParameterArgs,
     /// Generations of 48 runs
     #[arg(long, value_name = "N", default_value_t = 40, value_parser = clap::value_parser!(u16).range(1..=10_000))]
     generations: u16,
@@ -37,7 +33,8 @@ pub struct Args {
 /// Searches and prints what was found.
 pub fn run(args: Args) -> Ending {
     let stop = StopFlag::install().map_err(Failure::broken)?;
-    let (scenario, params) = set_up(Some(&args.scenario), None, args.profile, &args.set).map_err(Failure::usage)?;
+    let (scenario, params) =
+        set_up(Some(&args.scenario), None, args.parameters.profile, &args.parameters.set).map_err(Failure::usage)?;
     let generations = usize::from(args.generations);
     let progress = Progress::of_work(generations * POPULATION);
     let found = constants(&scenario, &params, generations, args.seed, &stop, || progress.advance());

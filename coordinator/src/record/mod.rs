@@ -25,6 +25,7 @@ pub mod trajectory;
 
 pub use about::About;
 pub use folder::{RecordError, RunFolder};
+pub use shared::team::{PARAMS_FILE, SCENARIO_FILE};
 
 use self::horizons::HorizonsWriter;
 use self::mcap::LogWriter;
@@ -36,12 +37,23 @@ use vodca::params::Params;
 use vodca::scenario::Scenario;
 use vodca::step::Step;
 
-/// Name of the effective scenario in a run folder.
-pub const SCENARIO_FILE: &str = "scenario.toml";
-/// Name of the effective parameters in a run folder.
-pub const PARAMS_FILE: &str = "params.toml";
 /// Name of the summary in a run folder.
 pub const SUMMARY_FILE: &str = "summary.json";
+
+/// Writes `scenario.toml` and `params.toml` into `folder`: what robots read when they start, and everybody
+/// who reads the run later.
+///
+/// # Errors
+/// A scenario that has no form in TOML, or a file that cannot be written.
+pub fn write_setup(folder: &RunFolder, scenario: &Scenario, params: &Params) -> Result<(), RecordError> {
+    let text = scenario.to_toml().map_err(|error| RecordError::Encode {
+        path: folder.file(SCENARIO_FILE),
+        what: "the scenario",
+        reason: error.to_string(),
+    })?;
+    folder.write(SCENARIO_FILE, text.as_bytes())?;
+    folder.write(PARAMS_FILE, params.to_toml().as_bytes())
+}
 
 /// Records a run tick by tick.
 pub struct Recorder {
@@ -58,13 +70,12 @@ pub struct Recorder {
 impl Recorder {
     /// Writes what is known before the first tick and opens the files that grow.
     pub fn start(folder: RunFolder, scenario: &Scenario, params: &Params, about: &About) -> Result<Self, RecordError> {
-        let encode = |name, what, reason| RecordError::Encode { path: folder.file(name), what, reason };
-        let scenario_text =
-            scenario.to_toml().map_err(|error| encode(SCENARIO_FILE, "the scenario", error.to_string()))?;
-        let about =
-            toml::to_string(about).map_err(|error| encode(about::FILE, "the run's description", error.to_string()))?;
-        folder.write(SCENARIO_FILE, scenario_text.as_bytes())?;
-        folder.write(PARAMS_FILE, params.to_toml().as_bytes())?;
+        let about = toml::to_string(about).map_err(|error| RecordError::Encode {
+            path: folder.file(about::FILE),
+            what: "the run's description",
+            reason: error.to_string(),
+        })?;
+        write_setup(&folder, scenario, params)?;
         folder.write(about::FILE, about.as_bytes())?;
         Ok(Self {
             trajectory: TrajectoryWriter::create(folder.file(trajectory::FILE))?,

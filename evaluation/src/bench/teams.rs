@@ -4,7 +4,7 @@ use super::{BenchError, partner};
 use coordinator::horizons::RunHorizons;
 use coordinator::launch::Program;
 use coordinator::policy::PolicyOptions;
-use coordinator::record::{PARAMS_FILE, RecordError, RunFolder, SCENARIO_FILE};
+use coordinator::record::{RecordError, RunFolder, write_setup};
 use coordinator::run::{Episode, EpisodeDriver, Options, Outcome, Run, RunTick};
 use coordinator::team::ProcessTeam;
 use shared::exchange::Kind;
@@ -91,13 +91,7 @@ pub(super) fn drive_with(
     }
     let home = tempfile::tempdir().map_err(|source| BenchError::System { what: "make a folder", source })?;
     let folder = RunFolder::at(&home.path().join("run"))?;
-    let text = scenario.to_toml().map_err(|error| RecordError::Encode {
-        path: folder.file(SCENARIO_FILE),
-        what: "the scenario",
-        reason: error.to_string(),
-    })?;
-    folder.write(SCENARIO_FILE, text.as_bytes())?;
-    folder.write(PARAMS_FILE, params.to_toml().as_bytes())?;
+    write_setup(&folder, &scenario, &params)?;
 
     let robots = scenario.robots.len();
     let options = options(&folder, &scenario, spec, policy)?;
