@@ -5,6 +5,8 @@ use crate::commands::{
     verify,
 };
 use crate::exit::{Ending, Failure, Outcome};
+use crate::needs::needs;
+use crate::stdout;
 use clap::{Parser, Subcommand};
 use evaluation::bench::partner;
 
@@ -13,7 +15,7 @@ use evaluation::bench::partner;
 #[command(name = "vodca", bin_name = "./run.sh", version, arg_required_else_help = true, max_term_width = 100, after_help = EXAMPLES)]
 pub struct Cli {
     #[command(subcommand)]
-    command: Command,
+    pub(crate) command: Command,
 }
 
 const EXAMPLES: &str = "\
@@ -28,7 +30,7 @@ Every command has its own --help.
 Exit codes: 0 arrived, or asked to stop; 1 failed; 2 wrong usage; 3 a robot's process was lost.";
 
 #[derive(Debug, Subcommand)]
-enum Command {
+pub(crate) enum Command {
     /// Run a team: one process per robot, recorded in a folder of its own (`./run.sh N` is short for it)
     Run(run::Args),
     /// What became `compare`
@@ -60,6 +62,13 @@ enum Command {
     Results(results::Args),
     /// Measure latencies and times beside their floors and beside others
     Bench(bench::Args),
+    /// What run.sh has to build for a command
+    #[command(hide = true, disable_help_flag = true)]
+    Needs {
+        /// The command with its arguments
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        arguments: Vec<String>,
+    },
     /// Another process of a benchmark (started by `bench`, not by people)
     #[command(hide = true, name = partner::COMMAND)]
     Partner(partner::Args),
@@ -84,6 +93,10 @@ impl Cli {
             Command::Params(args) => params::run(args),
             Command::Results(args) => results::run(args),
             Command::Bench(args) => bench::run(args),
+            Command::Needs { arguments } => {
+                needs(&arguments).into_iter().try_for_each(|need| stdout::line(need.word()))?;
+                Ok(Outcome::Done)
+            }
             Command::Partner(args) => partner::run(args).map(|()| Outcome::Done).map_err(Failure::broken),
         }
     }
@@ -99,7 +112,7 @@ mod tests {
         let mut cli = Cli::command();
         cli.build();
         cli.clone().debug_assert();
-        for command in cli.get_subcommands_mut().filter(|command| command.get_name() != "help") {
+        for command in cli.get_subcommands_mut().filter(|command| !["help", "needs"].contains(&command.get_name())) {
             let help = command.render_long_help().to_string();
             assert!(help.contains("Example") && help.contains("./run.sh"), "{help}");
         }

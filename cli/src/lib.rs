@@ -3,6 +3,7 @@
 pub mod cli;
 pub mod commands;
 pub mod exit;
+pub mod needs;
 pub mod progress;
 pub mod report;
 pub mod stdout;

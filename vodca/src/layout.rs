@@ -35,7 +35,6 @@ impl Layout {
         let owed: Vec<f64> = robot_extra.iter().map(|extra| min_separation + extra).collect();
         let places: Vec<Disc> =
             set_points.iter().zip(&robot_extra).map(|(&centre, &extra)| Disc { centre, extra }).collect();
-        let routes = Route::of_team(&set_points, &owed, &places, &obstacles);
         let room = (0..set_points.len())
             .map(|robot| {
                 let left = |at: Position, extra: f64| (at - set_points[robot]).norm() - owed[robot] - extra;
@@ -46,7 +45,7 @@ impl Layout {
             })
             .collect::<Vec<f64>>();
         let filling = Filling::new(&places, &obstacles, min_separation);
-        let outside = Route::of_team(&filling.outside, &owed, &places, &obstacles);
+        let [routes, outside] = Route::of_team([&set_points, &filling.outside], &owed, &places, &obstacles);
         Self { set_points, robot_extra, obstacles, routes, outside, filling, room }
     }
 

@@ -6,7 +6,6 @@
 use crate::Position;
 use crate::conflict::rows::turned;
 use crate::metrics::Disc;
-use crate::scenario::MAX_ROBOTS;
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
@@ -29,38 +28,42 @@ pub struct Closed {
     pub radius: f64,
 }
 
-/// Robots by number that stand at their set-points.
+/// Teams of more robots walk round obstacles only, and slide past those who stand: corners round every set-point, and who
+/// sees whom, would take more memory and time than such a team has.
+pub const MOST_STANDING: usize = 64;
+
+/// Robots by number that stand at their set-points; of teams of up to [`MOST_STANDING`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Standing([u64; MAX_ROBOTS.div_ceil(64)]);
+pub struct Standing(u64);
 
 impl Standing {
-    /// Adds `robot`.
+    /// Adds `robot`, below [`MOST_STANDING`].
     pub fn add(&mut self, robot: usize) {
-        self.0[robot / 64] |= 1 << (robot % 64);
+        self.0 |= 1 << robot;
+    }
+
+    /// These without `robot`.
+    fn without(self, robot: usize) -> Self {
+        if robot < MOST_STANDING { Self(self.0 & !(1 << robot)) } else { self }
     }
 
     /// Whether nobody stands.
     pub fn is_empty(&self) -> bool {
-        *self == Self::default()
-    }
-
-    /// Whether `robot` stands.
-    pub fn has(&self, robot: usize) -> bool {
-        self.0[robot / 64] & 1 << (robot % 64) != 0
+        self.0 == 0
     }
 
     /// Of these, the ones of `other`.
     pub fn among(&self, other: &Self) -> Self {
-        Self(std::array::from_fn(|word| self.0[word] & other.0[word]))
+        Self(self.0 & other.0)
     }
 
     /// How many there are.
     pub fn count(&self) -> u32 {
-        self.0.iter().map(|word| word.count_ones()).sum()
+        self.0.count_ones()
     }
 
     fn meets(&self, other: &Self) -> bool {
-        self.0.iter().zip(&other.0).any(|(a, b)| a & b != 0)
+        self.0 & other.0 != 0
     }
 }
 
@@ -124,8 +127,11 @@ impl Corners {
 /// The set-points that a straight way leads over.
 fn between(places: &[Closed], from: Position, to: Position) -> Standing {
     let mut between = Standing::default();
+    let way = to - from;
+    let length_2 = way.norm_squared();
     for (robot, place) in places.iter().enumerate() {
-        if !(is_free(std::slice::from_ref(place), from, to) && is_free(std::slice::from_ref(place), to, from)) {
+        let along = ((place.centre - from).dot(&way) / length_2).clamp(0.0, 1.0);
+        if (from + way * along - place.centre).norm() < place.radius * (1.0 - CUT) {
             between.add(robot);
         }
     }
@@ -237,28 +243,40 @@ impl Rest {
 }
 
 impl Route {
-    /// The routes of a team past its obstacles to `ends`. `separations` (what each robot owes a disc of radius
-    /// min_separation / 2, m) are by robot; `places` are the set-points, where robots come to stand.
-    pub fn of_team(ends: &[Position], separations: &[f64], places: &[Disc], obstacles: &[Disc]) -> Vec<Self> {
+    /// The routes of a team past its obstacles, once for each of the `ends` (m, by robot). `separations` (what each
+    /// robot owes a disc of radius min_separation / 2, m) are by robot; `places` are the set-points, where robots come
+    /// to stand.
+    pub fn of_team<const K: usize>(
+        ends: [&[Position]; K],
+        separations: &[f64],
+        places: &[Disc],
+        obstacles: &[Disc],
+    ) -> [Vec<Self>; K] {
+        let places = if places.len() <= MOST_STANDING { places } else { &[] };
         let mut sizes: Vec<(f64, Arc<Corners>)> = Vec::new();
-        let route = |(robot, (end, separation)): (usize, (&Position, &f64))| {
-            let known = sizes.iter().find(|(size, _)| size == separation).map(|(_, corners)| corners.clone());
-            let corners = known.unwrap_or_else(|| {
-                let corners = Arc::new(Corners::new(obstacles, places, *separation));
-                sizes.push((*separation, corners.clone()));
-                corners
-            });
-            Self::new(robot, *end, corners)
-        };
-        ends.iter().zip(separations).enumerate().map(route).collect()
+        let corners: Vec<Arc<Corners>> = separations
+            .iter()
+            .map(|separation| {
+                let known = sizes.iter().find(|(size, _)| size == separation).map(|(_, corners)| corners.clone());
+                known.unwrap_or_else(|| {
+                    let corners = Arc::new(Corners::new(obstacles, places, *separation));
+                    sizes.push((*separation, corners.clone()));
+                    corners
+                })
+            })
+            .collect();
+        let route =
+            |(robot, end): (usize, &Position)| Self::new(robot, *end, separations[robot], corners[robot].clone());
+        ends.map(|ends| ends.iter().enumerate().map(route).collect())
     }
 
-    fn new(robot: usize, set_point: Position, corners: Arc<Corners>) -> Self {
+    fn new(robot: usize, set_point: Position, separation: f64, corners: Arc<Corners>) -> Self {
         let Corners { closed, places, at, .. } = &*corners;
         let sees = |to: Position| {
             at.iter().map(|from| is_free(closed, *from, to).then(|| between_but(places, robot, *from, to))).collect()
         };
-        let entry = entry(closed, places, robot, set_point);
+        let reach = 2.0 * places.get(robot).map_or(separation, |own| own.radius);
+        let entry = entry(closed, places, robot, set_point, reach);
         let (sees_end, sees_entry) = (sees(set_point), sees(entry));
         let mut route =
             Self { set_point, corners: corners.clone(), sees_end, entry, sees_entry, alone: Rest::default() };
@@ -360,7 +378,7 @@ impl Route {
         let mut met = Standing::default();
         for (from, to) in starts.zip(path.points()) {
             let between = between(&self.corners.places, *from, *to);
-            met = Standing(std::array::from_fn(|word| met.0[word] | between.0[word]));
+            met.0 |= between.0;
         }
         met
     }
@@ -434,20 +452,17 @@ impl Route {
 
 /// [`between`], without the place of `robot` itself.
 fn between_but(places: &[Closed], robot: usize, from: Position, to: Position) -> Standing {
-    let mut between = between(places, from, to);
-    between.0[robot / 64] &= !(1 << (robot % 64));
-    between
+    between(places, from, to).without(robot)
 }
 
-/// The place two separations before the set-point of `robot` from where it gets in between all others with the most
+/// The place `reach` (two separations, m) before the set-point of `robot` from where it gets in between all others with the most
 /// room.
-fn entry(closed: &[Closed], places: &[Closed], robot: usize, set_point: Position) -> Position {
+fn entry(closed: &[Closed], places: &[Closed], robot: usize, set_point: Position, reach: f64) -> Position {
     const DIRECTIONS: usize = 128;
     let others = || {
         let places = places.iter().enumerate().filter(|(other, _)| *other != robot).map(|(_, place)| place);
         closed.iter().chain(places).filter(|disc| (disc.centre - set_point).norm() < 3.0 * disc.radius)
     };
-    let reach = 2.0 * places[robot].radius;
     let room = |to: Position| {
         let way = to - set_point;
         let left = |disc: &Closed| {
@@ -501,7 +516,7 @@ mod tests {
     fn route(set_point: (f64, f64), obstacles: &[(f64, f64)]) -> Route {
         let discs: Vec<Disc> =
             obstacles.iter().map(|(x, y)| Disc { centre: Position::new(*x, *y), extra: 0.0 }).collect();
-        Route::of_team(&[Position::new(set_point.0, set_point.1)], &[1.5], &[place(set_point)], &discs).remove(0)
+        Route::of_team([&[Position::new(set_point.0, set_point.1)]], &[1.5], &[place(set_point)], &discs)[0].remove(0)
     }
 
     /// Walks along the aim in small steps: (arrived, length of the way, least distance to an obstacle).
@@ -547,7 +562,7 @@ mod tests {
     fn who_stands_is_walked_round_where_that_is_cheaper_than_pushing() {
         let ends = [Position::new(10.0, 0.0), Position::new(5.0, 0.2)];
         let places = ends.map(|centre| Disc { centre, extra: 0.0 });
-        let route = Route::of_team(&ends, &[1.5; 2], &places, &[]).remove(0);
+        let route = Route::of_team([&ends], &[1.5; 2], &places, &[])[0].remove(0);
         let mut rests = [Rest::of(&route), Rest::of(&route)];
         let mut stands = Standing::default();
         let mut way = |stands, tight, price| route.path_round(Position::zeros(), stands, tight, price, &mut rests);
@@ -570,7 +585,7 @@ mod tests {
     fn robots_of_other_sizes_have_ways_of_their_own() {
         let discs = [Disc { centre: Position::new(5.0, 1.6), extra: 0.0 }];
         let goal = Position::new(10.0, 0.0);
-        let routes = Route::of_team(&[goal; 3], &[1.5, 1.5, 2.0], &[place((10.0, 0.0)); 3], &discs);
+        let [routes] = Route::of_team([&[goal; 3]], &[1.5, 1.5, 2.0], &[place((10.0, 0.0)); 3], &discs);
         assert_eq!(routes[1].aim(Position::zeros()), goal);
         assert!(routes[2].aim(Position::zeros()).y < 0.0);
         assert!(Arc::ptr_eq(&routes[0].corners, &routes[1].corners));

@@ -47,6 +47,9 @@ impl Standing {
                 continue;
             }
             self.closed.push(Closed { centre: neighbour.set_point, radius: owed(layout.robot_extra[other]) });
+            if view.neighbours.len() > route::MOST_STANDING {
+                continue;
+            }
             self.who.add(other);
             if layout.is_tight(other, min_separation) {
                 self.tight.add(other);

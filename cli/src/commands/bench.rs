@@ -30,7 +30,7 @@ begins is called busy. `all` takes about twenty minutes.")]
 pub struct Args {
     /// What to measure
     #[arg(default_value = "all")]
-    part: Part,
+    pub(crate) part: Part,
     /// So briefly that only the form of the results means anything (for tests)
     #[arg(long)]
     quick: bool,

@@ -48,7 +48,7 @@ pub struct Args {
     /// PROFILE[KEY=VALUE,...]:HORIZON (safe:fixed:20, safe:random, paper:policy:NAME), orca, orca:TAU, orca-rh, orca-best
     #[arg(long, num_args = 1.., value_name = "SPEC",
           default_values = ["safe:fixed:20", "safe:random", "paper:fixed:20", "orca", "orca-rh"])]
-    controllers: Vec<ControllerSpecs>,
+    pub(crate) controllers: Vec<ControllerSpecs>,
     /// Number of seeds, from 0, of whatever is random
     #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u64).range(1..=100_000), conflicts_with = "seed_list")]
     seeds: u64,

@@ -22,7 +22,7 @@ Every part of results/ is made by a command of results/parts.toml; medians are k
 pub struct Args {
     /// Runs the command of a part anew and keeps its medians (repeatable)
     #[arg(long, value_name = "PART")]
-    measure: Vec<String>,
+    pub(crate) measure: Vec<String>,
     /// Keeps the medians of runs that are there: the CSV file of an earlier compare or evaluate (repeatable)
     #[arg(long, value_name = "PART=FILE", value_parser = part_and_file)]
     take: Vec<(String, PathBuf)>,

@@ -18,7 +18,6 @@ use shared::team::Episodes;
 use std::path::PathBuf;
 use std::time::Duration;
 use vodca::horizon_source::{HorizonSource, HorizonSpec};
-use vodca::params::Params;
 use vodca::scenario::{Scenario, set_up};
 
 /// What marks a family: every episode has a layout of its own.
@@ -61,7 +60,7 @@ pub struct Args {
     horizon: HorizonSpec,
     /// ONNX file or policies folder that chooses the horizons instead
     #[arg(long, value_name = "PATH", conflicts_with = "horizon")]
-    policy: Option<PathBuf>,
+    pub(crate) policy: Option<PathBuf>,
     #[command(flatten)]
     use_policy: PolicyArgs,
     #[command(flatten)]

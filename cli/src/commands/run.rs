@@ -50,7 +50,7 @@ pub struct Args {
     horizon: HorizonSpec,
     /// ONNX file or policies folder that chooses the horizons at every tick, instead of --horizon
     #[arg(long, value_name = "PATH", conflicts_with = "horizon")]
-    policy: Option<PathBuf>,
+    pub(crate) policy: Option<PathBuf>,
     #[command(flatten)]
     use_policy: PolicyArgs,
     #[command(flatten)]
@@ -81,7 +81,7 @@ pub struct Args {
     check_solver: bool,
     /// Serve the scene to Foxglove or Lichtblick on this machine (ws://127.0.0.1:PORT) while the team drives
     #[arg(long, value_name = "PORT", num_args = 0..=1, default_missing_value = "8765")]
-    foxglove: Option<u16>,
+    pub(crate) foxglove: Option<u16>,
     /// Print the robots' commands and wait for them to be started by hand
     #[arg(long)]
     by_hand: bool,
