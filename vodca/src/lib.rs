@@ -34,7 +34,7 @@
 //! # A tick
 //!
 //! [`Team::step`] (or [`play::play`], which also chooses horizons and tells observers) lets every robot, from the plans of
-//! tick k - 1 alone: find conflicts ([`conflict`]), choose its [`reference`], bound its cell ([`safety`]), solve
+//! tick k - 1 alone: find conflicts ([`conflict`]), choose its [`mod@reference`], bound its cell ([`safety`]), solve
 //! ([`mpc`]: closed form, structured solver, Clarabel), check, publish its [`prediction`], move its [`body`] and
 //! measure itself for tick k + 1.
 //!
