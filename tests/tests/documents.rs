@@ -137,7 +137,7 @@ fn every_rule_that_a_comment_cites_is_numbered_in_the_architecture() {
     let text = read(&root().join("docs/ARCHITECTURE.md"));
     let (_, rules) = text.split_once("## The rules of the safe profile").expect("the rules have a section");
     let section = rules.split("\n## ").next().unwrap_or_default();
-    let numbered = |number: &str| section.lines().any(|line| line.starts_with(&format!("{number}. **")));
+    let numbered = |number: &str| section.lines().any(|line| line.starts_with(&format!("| {number} |")));
     let mut cited = 0;
     for file in files("rs") {
         let text = read(&file);
@@ -155,8 +155,22 @@ fn every_rule_that_a_comment_cites_is_numbered_in_the_architecture() {
 #[test]
 fn every_entry_of_troubleshooting_has_a_cause_and_a_next_step() {
     let text = read(&root().join("docs/TROUBLESHOOTING.md"));
-    for entry in text.split("\n### ").skip(1) {
+    let entries: Vec<&str> = text.split("\n### ").skip(1).collect();
+    assert!(entries.len() >= 20, "only {} entries were found: the scan is broken", entries.len());
+    for entry in entries {
         let body = entry.split("\n## ").next().unwrap_or_default();
         assert!(body.contains("\nCause: ") && body.contains("\nNext: "), "{body}");
+    }
+}
+
+#[test]
+fn the_front_page_is_short_and_shows_a_picture_at_once() {
+    let text = read(&root().join("README.md"));
+    let lines: Vec<&str> = text.lines().collect();
+    assert!(lines.len() <= 200, "{} lines", lines.len());
+    let is_picture = |line: &&str| line.contains("![") || line.contains("<img ");
+    assert!(lines.iter().take(25).any(is_picture), "no picture within the first 25 lines");
+    for picture in text.split("src=\"").skip(1).filter_map(|rest| rest.split('"').next()) {
+        assert!(root().join(picture).is_file(), "there is no {picture}");
     }
 }
