@@ -1,7 +1,7 @@
 //! What every robot knows for the whole run.
 
 use crate::Position;
-use crate::metrics::Disc;
+use crate::geometry::Disc;
 use crate::route::Route;
 use crate::scenario::Scenario;
 

@@ -5,6 +5,7 @@ pub mod body;
 pub mod conflict;
 pub mod controller;
 pub mod explain;
+pub mod geometry;
 pub mod hearing;
 pub mod horizon;
 pub mod horizon_source;

@@ -4,9 +4,8 @@
 //! takes the whole responsibility for them.
 
 use super::half_planes::{HalfPlane, cross, nearest_velocity};
-use crate::conflict::rows::turned;
 use crate::controller::{Controller, Decision, View};
-use crate::hearing::in_disc;
+use crate::geometry::{in_disc, turned};
 use crate::layout::Layout;
 use crate::params::Params;
 use crate::prediction::Prediction;
