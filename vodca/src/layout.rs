@@ -28,4 +28,14 @@ impl Layout {
         let routes = Route::of_team(&set_points, &owed, &obstacles);
         Self { set_points, robot_extra, obstacles, routes }
     }
+
+    /// The separation between `robot` and robot `other`, m, where two discs of the usual size keep `usual`.
+    pub fn owed(&self, usual: f64, robot: usize, other: usize) -> f64 {
+        usual + self.robot_extra[robot] + self.robot_extra[other]
+    }
+
+    /// The separation between `robot` and `obstacle`, m, where two discs of the usual size keep `usual`.
+    pub fn owed_to_obstacle(&self, usual: f64, robot: usize, obstacle: &Disc) -> f64 {
+        usual + self.robot_extra[robot] + obstacle.extra
+    }
 }

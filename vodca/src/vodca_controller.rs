@@ -91,7 +91,7 @@ impl VodcaController {
         traffic.clear();
         for (other, neighbour) in view.neighbours.iter().enumerate().filter(|(other, _)| *other != *robot) {
             if let Some((_, from)) = neighbour.present {
-                let separation = model.min_separation + layout.robot_extra[*robot] + layout.robot_extra[other];
+                let separation = layout.owed(model.min_separation, *robot, other);
                 traffic.add(Walk { from, to: neighbour.set_point }, separation);
             }
         }
@@ -136,9 +136,9 @@ impl VodcaController {
         let Self { robot, layout, cell, params, .. } = self;
         let noise = params.cell.noise_bound;
         let escape = params.cell.escape + noise;
-        let owed = |extra: f64| params.cell.separation + 3.0 * noise + layout.robot_extra[*robot] + extra;
+        let usual = params.cell.separation + 3.0 * noise;
         for (other, neighbour) in view.neighbours.iter().enumerate().filter(|(other, _)| other != robot) {
-            let separation = owed(layout.robot_extra[other]);
+            let separation = layout.owed(usual, *robot, other);
             match neighbour.present {
                 Some((tick, position)) if tick == view.tick => {
                     let present = Present { position, separation, moves: true };
@@ -149,7 +149,8 @@ impl VodcaController {
             }
         }
         for obstacle in &layout.obstacles {
-            let present = Present { position: obstacle.centre, separation: owed(obstacle.extra), moves: false };
+            let separation = layout.owed_to_obstacle(usual, *robot, obstacle);
+            let present = Present { position: obstacle.centre, separation, moves: false };
             cell.keep_away(own, &present, escape, true);
         }
         self.rows.extend(self.cell.as_rows(view.position));
@@ -262,10 +263,10 @@ pub fn hazards<'a>(
 ) -> impl Iterator<Item = Hazard<'a>> + Clone {
     let way = (layout.set_points[robot] - view.position).norm();
     let gives_way = way < params.give_way.radius || memory.is_out_of_patience(&params.vodca);
-    let owed = move |extra: f64| params.model.min_separation + layout.robot_extra[robot] + extra;
+    let usual = params.model.min_separation;
     let others = view.neighbours.iter().enumerate().filter(move |(other, _)| *other != robot);
     let neighbours = others.filter_map(move |(other, neighbour)| {
-        let separation = owed(layout.robot_extra[other]);
+        let separation = layout.owed(usual, robot, other);
         let wish = || wish_to_let_pass(params, way, neighbour, &layout.routes[other]);
         if let Some(course) = gives_way.then(wish).flatten() {
             return Some(Hazard { course, separation: separation + params.give_way.clearance });
@@ -274,10 +275,10 @@ pub fn hazards<'a>(
         let age = (view.tick - 1).saturating_sub(*tick) as usize;
         Some(Hazard { course: Course::Plan { plan, age }, separation })
     });
-    let obstacles = layout
-        .obstacles
-        .iter()
-        .map(move |obstacle| Hazard { course: Course::Still(obstacle.centre), separation: owed(obstacle.extra) });
+    let obstacles = layout.obstacles.iter().map(move |obstacle| Hazard {
+        course: Course::Still(obstacle.centre),
+        separation: layout.owed_to_obstacle(usual, robot, obstacle),
+    });
     neighbours.chain(obstacles)
 }
 
