@@ -5,8 +5,8 @@
 //! prints the label of R_p twice; the second one is R_c.
 
 use vodca::Position;
+use vodca::geometry::Disc;
 use vodca::horizon::Horizon;
-use vodca::metrics::Disc;
 use vodca::params::Params;
 use vodca::scenario::Scenario;
 use vodca::separation::separation;

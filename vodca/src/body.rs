@@ -3,7 +3,7 @@
 //! [`SimulatedBody`] is the paper's model. A real robot implements [`Body`] on its driver; nothing else of the
 //! system knows which of the two it has.
 
-use crate::hearing::in_disc;
+use crate::geometry::in_disc;
 use crate::params::Params;
 use crate::random::Use;
 use crate::{Input, Position};

@@ -6,7 +6,7 @@
 
 use crate::Position;
 use crate::chains::Chains;
-use crate::metrics::Disc;
+use crate::geometry::Disc;
 use crate::route::Closed;
 
 /// Farther than any layout reaches, m.

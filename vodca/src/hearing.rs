@@ -1,6 +1,5 @@
 //! What a robot knows of the others, disturbed on purpose where the parameters say so. Draws depend on seed, tick, sender and listener only.
 
-use crate::Position;
 use crate::controller::Neighbour;
 use crate::params::Disturbance;
 use crate::prediction::Prediction;
@@ -76,20 +75,10 @@ impl Hearing {
     }
 }
 
-/// A draw from a disc of radius `radius` around the origin; nothing is drawn where it is 0.
-pub(crate) fn in_disc(radius: f64, seed: u64, purpose: Use, robot: usize, tick: u64) -> Position {
-    if radius == 0.0 {
-        return Position::zeros();
-    }
-    let mut generator = random::stream(seed, purpose, robot as u64, tick);
-    let length = radius * random::unit(&mut generator).sqrt();
-    let (sin, cos) = (std::f64::consts::TAU * random::unit(&mut generator)).sin_cos();
-    Position::new(cos, sin) * length
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Position;
 
     fn hearing(disturbance: Disturbance) -> Hearing {
         let scenario = Scenario::resolve(Some("two_setpoint"), None).unwrap();

@@ -2,7 +2,7 @@
 
 use crate::Position;
 use crate::filling::Filling;
-use crate::metrics::Disc;
+use crate::geometry::Disc;
 use crate::route::Route;
 use crate::scenario::Scenario;
 
@@ -53,5 +53,15 @@ impl Layout {
     /// separation to spare, let one through.
     pub fn is_tight(&self, robot: usize, min_separation: f64) -> bool {
         self.room[robot] < min_separation / 3.0 - 1e-6
+    }
+
+    /// The separation between `robot` and robot `other`, m, where two discs of the usual size keep `usual`.
+    pub fn owed(&self, usual: f64, robot: usize, other: usize) -> f64 {
+        usual + self.robot_extra[robot] + self.robot_extra[other]
+    }
+
+    /// The separation between `robot` and `obstacle`, m, where two discs of the usual size keep `usual`.
+    pub fn owed_to_obstacle(&self, usual: f64, robot: usize, obstacle: &Disc) -> f64 {
+        usual + self.robot_extra[robot] + obstacle.extra
     }
 }

@@ -75,6 +75,7 @@ pub mod conflict;
 pub mod controller;
 pub mod explain;
 pub mod filling;
+pub mod geometry;
 pub mod hearing;
 pub mod horizon;
 pub mod horizon_source;

@@ -1,7 +1,6 @@
 //! The reference that the cost draws a plan to (ARCHITECTURE, rules 1 and 4).
 
-use crate::conflict::detection::toward;
-use crate::conflict::rows::turned;
+use crate::geometry::{toward, turned};
 use crate::horizon::{Horizon, MAX_HORIZON};
 use crate::mpc::problem::{Target, TargetKind};
 use crate::params::Aim;

@@ -4,8 +4,7 @@
 //! robot that has arrived closes that side, it stays in the pocket for ever. The shortest way leads round.
 
 use crate::Position;
-use crate::conflict::rows::turned;
-use crate::metrics::Disc;
+use crate::geometry::{Disc, turned};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 

@@ -106,7 +106,7 @@ impl VodcaController {
         traffic.clear();
         for (other, neighbour) in view.neighbours.iter().enumerate().filter(|(other, _)| *other != *robot) {
             if let Some((_, from)) = neighbour.present {
-                let separation = model.min_separation + layout.robot_extra[*robot] + layout.robot_extra[other];
+                let separation = layout.owed(model.min_separation, *robot, other);
                 traffic.add(Walk { from, to: neighbour.toward }, separation);
             }
         }
@@ -146,9 +146,9 @@ impl VodcaController {
         let Self { robot, layout, cell, params, .. } = self;
         let noise = params.cell.noise_bound;
         let escape = params.cell.escape + noise;
-        let owed = |extra: f64| params.cell.separation + 3.0 * noise + layout.robot_extra[*robot] + extra;
+        let usual = params.cell.separation + 3.0 * noise;
         for (other, neighbour) in view.neighbours.iter().enumerate().filter(|(other, _)| other != robot) {
-            let separation = owed(layout.robot_extra[other]);
+            let separation = layout.owed(usual, *robot, other);
             match neighbour.present {
                 Some((tick, position)) if tick == view.tick => {
                     let present = Present { position, separation, moves: true };
@@ -159,7 +159,8 @@ impl VodcaController {
             }
         }
         for obstacle in &layout.obstacles {
-            let present = Present { position: obstacle.centre, separation: owed(obstacle.extra), moves: false };
+            let separation = layout.owed_to_obstacle(usual, *robot, obstacle);
+            let present = Present { position: obstacle.centre, separation, moves: false };
             cell.keep_away(own, &present, escape, true);
         }
         self.rows.extend(self.cell.as_rows(view.position));
@@ -278,10 +279,10 @@ pub fn hazards<'a>(
     // Never more than the layout has room for.
     let room = if params.mpc.reference == Reference::Route { layout.room[robot] / 2.0 } else { f64::INFINITY };
     let clearance = params.give_way.clearance.min(room);
-    let owed = move |extra: f64| params.model.min_separation + layout.robot_extra[robot] + extra;
+    let usual = params.model.min_separation;
     let others = view.neighbours.iter().enumerate().filter(move |(other, _)| *other != robot);
     let neighbours = others.filter_map(move |(other, neighbour)| {
-        let separation = owed(layout.robot_extra[other]);
+        let separation = layout.owed(usual, robot, other);
         let wish = || wish(params, neighbour);
         if regards[other] == Regard::Stays {
             return None;
@@ -293,10 +294,10 @@ pub fn hazards<'a>(
         let age = (view.tick - 1).saturating_sub(*tick) as usize;
         Some(Hazard { course: Course::Plan { plan, age }, separation })
     });
-    let obstacles = layout
-        .obstacles
-        .iter()
-        .map(move |obstacle| Hazard { course: Course::Still(obstacle.centre), separation: owed(obstacle.extra) });
+    let obstacles = layout.obstacles.iter().map(move |obstacle| Hazard {
+        course: Course::Still(obstacle.centre),
+        separation: layout.owed_to_obstacle(usual, robot, obstacle),
+    });
     neighbours.chain(obstacles)
 }
 

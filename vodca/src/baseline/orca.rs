@@ -4,9 +4,8 @@
 //! takes the whole responsibility for them.
 
 use super::half_planes::{HalfPlane, cross, nearest_velocity};
-use crate::conflict::rows::turned;
 use crate::controller::{Controller, Decision, View};
-use crate::hearing::in_disc;
+use crate::geometry::{in_disc, turned};
 use crate::layout::Layout;
 use crate::params::Params;
 use crate::prediction::Prediction;
@@ -71,12 +70,13 @@ impl OrcaController {
     /// Half planes of obstacles first: they stay hard when the robots' planes cannot all be met.
     fn look_around(&mut self, view: &View<'_>) -> usize {
         let orca = &self.params.orca;
-        let owed = |extra: f64| self.params.model.min_separation + self.layout.robot_extra[self.robot] + extra;
+        let (layout, usual) = (&self.layout, self.params.model.min_separation);
         let h = self.params.model.sample_time;
         self.planes.clear();
         for obstacle in &self.layout.obstacles {
             let offset = obstacle.centre - view.position;
-            let disc = Disc { offset, relative_velocity: self.velocity, radii: owed(obstacle.extra), share: 1.0 };
+            let radii = layout.owed_to_obstacle(usual, self.robot, obstacle);
+            let disc = Disc { offset, relative_velocity: self.velocity, radii, share: 1.0 };
             if offset.norm() < orca.neighbour_distance {
                 self.planes.push(half_plane(&disc, self.velocity, orca.time_horizon, h));
             }
@@ -99,7 +99,7 @@ impl OrcaController {
             let disc = Disc {
                 offset: present - view.position,
                 relative_velocity: self.velocity - velocity,
-                radii: owed(self.layout.robot_extra[other]),
+                radii: layout.owed(usual, self.robot, other),
                 share: 0.5,
             };
             self.planes.push(half_plane(&disc, self.velocity, orca.time_horizon, h));

@@ -4,8 +4,8 @@
 //! for ever, each in its own cell. Whoever has been in conflict for very long walks off in a random direction
 //! for a while, as stations on a shared wire do, and tries again.
 
-use super::rows::turned;
 use crate::Position;
+use crate::geometry::turned;
 use crate::random::{self, Use};
 
 /// Length of a try, or of a walk off, ticks.

@@ -1,10 +1,8 @@
 //! Detection: where two predictions, or a prediction and an obstacle, come too close.
 
 use crate::Position;
+use crate::geometry::toward;
 use crate::prediction::Prediction;
-
-/// Distances below this have no direction, m.
-pub const NO_DIRECTION: f64 = 1e-9;
 
 /// What a hazard is expected to do.
 #[derive(Clone, Copy, Debug)]
@@ -52,14 +50,6 @@ impl Hazard<'_> {
             Course::Still(position) => Some(position),
         }
     }
-}
-
-/// The point reached from `from` towards `to` when the largest axis has moved `reach` metres;
-/// `to` once it is within reach.
-pub fn toward(from: Position, to: Position, reach: f64) -> Position {
-    let way = to - from;
-    let largest = way.x.abs().max(way.y.abs());
-    if largest <= reach { to } else { from + way * (reach / largest) }
 }
 
 /// A conflict: the first compared step at which the distance is below the separation owed.
@@ -140,6 +130,5 @@ mod tests {
         let wish = Hazard { course: Course::Wish { from, to, stride: 0.3 }, separation: 1.0 };
         assert!((wish.at(1).unwrap() - Position::new(0.3, -0.15)).norm() < 1e-15);
         assert_eq!(wish.at(4), Some(to));
-        assert_eq!(toward(to, to, 0.0), to);
     }
 }

@@ -1,7 +1,7 @@
 //! From conflicts to collision rows, with every switch of the method.
 
-use super::detection::{Conflict, Hazard, NO_DIRECTION, first_conflict};
-use crate::Position;
+use super::detection::{Conflict, Hazard, first_conflict};
+use crate::geometry::{NO_DIRECTION, turned};
 use crate::horizon::Horizon;
 use crate::mpc::problem::Row;
 use crate::params::{BeyondHorizon, RowChoice, RowStep, Softness, Tie, Vodca};
@@ -82,13 +82,4 @@ fn row(vodca: &Vodca, turn: f64, conflict: &Conflict, horizon: Horizon) -> Optio
     let along = normal.x.mul_add(conflict.hazard.x, normal.y * conflict.hazard.y);
     let offset = conflict.separation + along;
     Some(Row { step, normal, offset, hard: vodca.softness == Softness::Hard })
-}
-
-/// `vector` turned left (counter-clockwise) by `angle` rad.
-pub fn turned(vector: Position, angle: f64) -> Position {
-    if angle == 0.0 {
-        return vector;
-    }
-    let (sin, cos) = angle.sin_cos();
-    Position::new(cos * vector.x - sin * vector.y, sin * vector.x + cos * vector.y)
 }

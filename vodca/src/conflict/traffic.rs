@@ -3,8 +3,8 @@
 //! It looks at where everybody wishes to go, not at plans: a plan shows a conflict only within the shorter of
 //! two horizons, and then a row brakes whom an earlier turn would have led past.
 
-use super::rows::turned;
 use crate::Position;
+use crate::geometry::turned;
 use crate::params::Aim;
 
 /// Turns that are tried: 0, and this many up to `aim.most`.

@@ -7,21 +7,12 @@ pub use run::RunMetrics;
 pub use summary::{RobotSummary, RunSummary, SolverLevels, Statuses};
 
 use crate::Position;
+use crate::geometry::Disc;
 use crate::separation::separation;
 
 /// Distances that count as below min_separation are more than this below it, m: a hard row that
 /// binds leaves exactly min_separation, up to rounding.
 pub const SEPARATION_TOLERANCE: f64 = 1e-6;
-
-/// A disc that may be hit: the separation it is owed beyond min_separation is `extra`, m
-/// (its radius minus min_separation / 2).
-#[derive(Clone, Copy, Debug)]
-pub struct Disc {
-    /// Centre, m.
-    pub centre: Position,
-    /// Radius beyond min_separation / 2, m.
-    pub extra: f64,
-}
 
 /// Smallest effective separation of one tick: `moves[i]` is robot i's straight motion. Effective means
 /// that radii beyond min_separation / 2 are taken off, so that min_separation is the limit for all.

@@ -1,7 +1,8 @@
 //! The accumulator of a run's figures, used by the in-process team, the coordinator and offline.
 
-use super::{Disc, RobotSummary, RunSummary, SEPARATION_TOLERANCE, SolverLevels, Statuses};
+use super::{RobotSummary, RunSummary, SEPARATION_TOLERANCE, SolverLevels, Statuses};
 use crate::Position;
+use crate::geometry::Disc;
 use crate::params::Params;
 use crate::scenario::Scenario;
 use crate::separation::separation;

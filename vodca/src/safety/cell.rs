@@ -6,7 +6,7 @@
 //! satisfies every row whose demand is not positive.
 
 use crate::Position;
-use crate::conflict::detection::NO_DIRECTION;
+use crate::geometry::NO_DIRECTION;
 use crate::mpc::problem::Row;
 
 /// `normal . move >= demand` for the move of one tick, m.

@@ -16,7 +16,7 @@ pub use error::{Problem, ScenarioError};
 pub use setup::{SetupError, set_up};
 
 use crate::Position;
-use crate::metrics::Disc;
+use crate::geometry::Disc;
 use crate::suggest;
 use std::path::Path;
 
