@@ -137,7 +137,7 @@ fn every_rule_that_a_comment_cites_is_numbered_in_the_architecture() {
     let text = read(&root().join("docs/ARCHITECTURE.md"));
     let (_, rules) = text.split_once("## The rules of the safe profile").expect("the rules have a section");
     let section = rules.split("\n## ").next().unwrap_or_default();
-    let numbered = |number: &str| section.lines().any(|line| line.starts_with(&format!("{number}. **")));
+    let numbered = |number: &str| section.lines().any(|line| line.starts_with(&format!("| {number} | ")));
     let mut cited = 0;
     for file in files("rs") {
         let text = read(&file);
