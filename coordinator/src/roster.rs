@@ -54,7 +54,7 @@ pub struct Roster {
 }
 
 impl Roster {
-    /// A team of which nobody is there yet; `names` by robot number.
+    /// A team of which no robot is there yet; `names` by robot number.
     pub fn new(run: PathBuf, names: Vec<String>) -> Self {
         let robots = names.len();
         let processes = (0..robots).map(|_| Process::Unknown).collect();

@@ -167,12 +167,12 @@ impl ProcessTeam {
         })
     }
 
-    /// Starts every robot that nobody starts by hand.
+    /// Starts every robot that is not started by hand.
     pub(crate) fn start_robots(&mut self) -> Result<(), RunError> {
         let Agents::Launch(program) = &self.options.agents else { return Ok(()) };
         for robot in 0..self.reported.len() {
             if self.stop.is_set() {
-                return Ok(()); // whoever waits for them sees it, too
+                return Ok(()); // the wait for them sees it, too
             }
             let child = launch::start(program, &self.options.run, robot)?;
             self.roster.started(robot, child);
@@ -221,7 +221,7 @@ impl ProcessTeam {
         })
     }
 
-    /// Hands reports to `take` until nobody's answer is missing.
+    /// Hands reports to `take` until no answer is missing.
     fn collect(
         &mut self,
         tick: Option<u64>,

@@ -45,7 +45,7 @@ pub enum Event {
         serving: Serving,
         /// What acted.
         previous: Option<Serving>,
-        /// What nobody needs any more.
+        /// What is no longer needed.
         retired: Option<Box<Loaded>>,
     },
     /// A rollback was ordered to a model that is not there any more.
@@ -97,7 +97,7 @@ impl HotSwap {
 
     /// One model for good, without a loader: a shadow.
     pub fn always(robots: usize, model: Loaded) -> Self {
-        // Both far ends are gone at once: nobody orders, nobody listens.
+        // Both far ends are gone at once: no orders come, no answers are read.
         let (orders, events) = (channel().1, channel().0);
         Self { current: Some(Box::new(model)), ..Self::new(robots, orders, events) }
     }

@@ -141,7 +141,7 @@ impl Server {
         let chosen = self.swap.choose(tick, &self.positions, choice, &mut self.chosen);
         let kind = if chosen { answer::HORIZONS } else { answer::NONE };
         self.publish(observation, read, kind, self.swap.current())?;
-        // Only now: a shadow delays nobody.
+        // Only now: a shadow must not delay the answer.
         if let Some(shadow) = &mut self.shadow {
             let read = os::now_ns();
             if shadow.choose(tick, &self.positions, choice, &mut self.chosen) {

@@ -122,7 +122,7 @@ pub struct PolicySource {
     options: PolicyOptions,
     robots: usize,
     epoch: u64,
-    /// Whether waiting makes sense. A server that let a tick down is not waited for until it speaks again.
+    /// Whether waiting makes sense. A server that missed a tick is not waited for until it answers again.
     present: bool,
     /// Whether a server started by hand has taken the place of ours.
     successor: bool,

@@ -64,7 +64,7 @@ pub enum RecordError {
     },
 }
 
-/// The folder of a run, empty when it was opened and nobody else's until it is dropped.
+/// The folder of a run, empty when it was opened and locked until it is dropped.
 #[derive(Debug)]
 pub struct RunFolder {
     path: PathBuf,

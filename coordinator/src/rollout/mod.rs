@@ -61,7 +61,7 @@ struct Running {
 }
 
 impl<'a> Recorder<'a> {
-    /// Records rounds as `orders` say into the folder `out`, if there is one. `written` hears of every shard. `None`: there
+    /// Records rounds as `orders` say into the folder `out`, if there is one. `written` is called with every shard. `None`: there
     /// is nothing to do.
     pub fn new(
         params: &'a Params,

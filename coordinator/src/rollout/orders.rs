@@ -31,7 +31,7 @@ pub enum Orders {
 }
 
 impl Orders {
-    /// Reads rounds from standard input, in a thread that nobody waits for.
+    /// Reads rounds from standard input, in a detached thread.
     pub fn from_stdin(stop: &StopFlag) -> Self {
         let (sender, lines) = channel();
         std::thread::spawn(move || {

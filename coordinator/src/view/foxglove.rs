@@ -228,7 +228,7 @@ impl Viewer {
     }
 }
 
-/// Accepts who speaks our protocol.
+/// Accepts clients of our protocol.
 #[allow(clippy::result_large_err)] // the library's own type
 fn agree(request: &Request, mut response: Response) -> Result<Response, ErrorResponse> {
     let offered = request.headers().get_all(PROTOCOL_HEADER).iter().filter_map(|header| header.to_str().ok());
@@ -295,7 +295,7 @@ mod tests {
         assert_eq!(channels[1]["schemaName"], "foxglove.SceneUpdate");
         assert_eq!(channels[3]["schemaEncoding"], "jsonschema");
 
-        // The layout comes once to whoever wants it, whenever that is; nobody wanted `/poses`.
+        // The layout comes once per subscriber, at any time; nothing subscribed to `/poses`.
         // Orders are carried out one after the other: when the second is answered, the first was.
         subscribe(&mut client, 41, 3);
         subscribe(&mut client, 40, film::LAYOUT);

@@ -26,7 +26,7 @@ impl LoadAverage {
     }
 
     /// Whether, before a benchmark, so much else was running that its figures are not those of the machine
-    /// alone. Of a load that nobody knows that has to be assumed.
+    /// alone. An unknown load has to be taken for a busy machine.
     pub fn is_busy(&self) -> bool {
         self.last_minute().is_none_or(|load| load > QUIET)
     }

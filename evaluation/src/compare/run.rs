@@ -36,7 +36,7 @@ pub struct Run<'a> {
 pub struct Runs<'a> {
     /// By job; `None`: not done, because somebody asked to stop or because of the failure.
     pub done: Vec<Option<Run<'a>>>,
-    /// Why not all were done, when nobody asked for it.
+    /// Why not all were done, unless a stop was asked for.
     pub failure: Option<ClientError>,
 }
 

@@ -68,7 +68,6 @@ fn draw_robot(body: &mut String, film: &Film, frame: &Frame, robot: usize, half:
     let entry = &film.scenario.robots[robot];
     let radius = entry.radius.unwrap_or(half) * SCALE;
     let still = (STILL * film.ticks.len() as f64) as usize;
-    let places: Vec<[f64; 2]> = shown(film).map(|tick| frame.at(place(film, robot, tick))).collect();
     let [x, y] = frame.at(entry.set_point);
     line(
         body,
@@ -76,28 +75,8 @@ fn draw_robot(body: &mut String, film: &Film, frame: &Frame, robot: usize, half:
             "<circle class=\"w\" cx=\"{x:.0}\" cy=\"{y:.0}\" r=\"{radius:.1}\" fill=\"none\" stroke=\"{colour}\"/>"
         ),
     );
-    // The way so far: one path, of which a growing part is drawn.
-    let mut path = String::from("M");
-    let mut way = vec![0.0];
-    for pair in places.windows(2) {
-        let [from, to] = [pair[0], pair[1]];
-        way.push(way[way.len() - 1] + (to[0] - from[0]).hypot(to[1] - from[1]));
-    }
-    for [x, y] in &places[..=film.ticks.len()] {
-        let _ = write!(path, "{x:.1} {y:.1} "); // writing to a String cannot fail
-    }
-    let length = way[way.len() - 1];
-    let left: Vec<String> = way.iter().map(|gone| format!("{:.0}", length - gone)).collect();
-    line(
-        body,
-        format_args!(
-            "<path fill=\"none\" stroke=\"{colour}\" stroke-width=\"1.5\" stroke-opacity=\".5\" stroke-dasharray=\"{length:.0}\" \
-             stroke-dashoffset=\"{}\" d=\"{}\">{}</path>",
-            left[still],
-            path.trim_end(),
-            animate("stroke-dashoffset", &left, seconds, "linear")
-        ),
-    );
+    let places: Vec<[f64; 2]> = shown(film).map(|tick| frame.at(place(film, robot, tick))).collect();
+    draw_way(body, &places[..=film.ticks.len()], still, colour, seconds);
     let plans: Vec<String> = shown(film).map(|tick| plan(film, frame, robot, tick)).collect();
     line(
         body,
@@ -120,6 +99,28 @@ fn draw_robot(body: &mut String, film: &Film, frame: &Frame, robot: usize, half:
             animate("cx", &xs, seconds, "linear"),
             animate("cy", &ys, seconds, "linear"),
             animate("fill-opacity", &full, seconds, "discrete")
+        ),
+    );
+}
+
+/// The way so far: one path through `places`, of which a growing part is drawn.
+fn draw_way(body: &mut String, places: &[[f64; 2]], still: usize, colour: &str, seconds: f64) {
+    let mut gone = vec![0.0];
+    for pair in places.windows(2) {
+        gone.push(gone[gone.len() - 1] + (pair[1][0] - pair[0][0]).hypot(pair[1][1] - pair[0][1]));
+    }
+    let length = gone[gone.len() - 1];
+    let end = std::iter::repeat_n(length, REST - 1);
+    let left: Vec<String> = gone.iter().copied().chain(end).map(|gone| format!("{:.0}", length - gone)).collect();
+    let path: Vec<String> = places.iter().map(|[x, y]| format!("{x:.1} {y:.1}")).collect();
+    line(
+        body,
+        format_args!(
+            "<path fill=\"none\" stroke=\"{colour}\" stroke-width=\"1.5\" stroke-opacity=\".5\" stroke-dasharray=\"{length:.0}\" \
+             stroke-dashoffset=\"{}\" d=\"M{}\">{}</path>",
+            left[still],
+            path.join(" "),
+            animate("stroke-dashoffset", &left, seconds, "linear")
         ),
     );
 }

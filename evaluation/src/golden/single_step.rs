@@ -163,7 +163,7 @@ fn place(at: &[f64; 2]) -> Position {
     Position::new(at[0], at[1])
 }
 
-/// A plan from its states l = 1..=N; nobody looks at state(0) here.
+/// A plan from its states l = 1..=N; state(0) is not used here.
 fn plan(states: &Vec<[f64; 2]>) -> Prediction {
     let all: Vec<Position> = states.iter().take(1).chain(states).map(place).collect();
     Prediction::from_states(&all, Position::zeros())

@@ -186,7 +186,7 @@ impl Trainer {
         rollout_arguments(&self.plan, stream)
     }
 
-    /// Trains until the budget is spent or somebody asks to stop, and leaves a checkpoint. `watch` hears of
+    /// Trains until the budget is spent or somebody asks to stop, and leaves a checkpoint. `watch` is told of
     /// every round.
     pub fn train(
         &mut self,
@@ -224,7 +224,7 @@ impl Trainer {
             losses = Some(self.learner.update());
         }
         let learnt = start.elapsed();
-        // To its end, whoever asks to stop: rounds are short.
+        // A round is finished even when a stop was asked for: rounds are short.
         let round = self.rollouts.whole_answer()?;
         self.take(&round)?;
         self.state.episodes += self.plan.round_episodes;
@@ -258,7 +258,7 @@ impl Trainer {
             .step_by(every)
             .map(|row| shard.row(row).observation.iter().map(|metres| f64::from(*metres)).collect())
             .collect();
-        let _ = std::fs::remove_file(path); // it stays in the way of nobody
+        let _ = std::fs::remove_file(path); // a file left behind harms nothing
         Ok(())
     }
 

@@ -52,7 +52,7 @@ pub enum SessionError {
         /// How long somebody waited.
         seconds: u64,
     },
-    /// It answers what nobody understands.
+    /// Its answer cannot be read.
     #[error("the rollouts in {} answered `{line}`: {reason}; are coordinator and learner of one version?", folder.display())]
     Strange {
         /// The session's folder.
@@ -138,7 +138,7 @@ impl Session {
         Ok(None)
     }
 
-    /// Waits for the round that was ordered, whoever asks to stop.
+    /// Waits for the round that was ordered, even when a stop was asked for.
     pub fn whole_answer(&mut self) -> Result<RoundReport, SessionError> {
         let begun = Instant::now();
         loop {

@@ -5,7 +5,7 @@
 //! 2. [`try_out`]: load it, run it on the canary set and on its reference set, compare.
 //!
 //! [`probe`] does the second step in a process of its own, so that a model which crashes, hangs or
-//! eats memory takes nobody with it.
+//! eats memory ends alone.
 
 mod canary;
 mod error;

@@ -1,4 +1,4 @@
-//! Tries a model in a process of its own: one that crashes, hangs or eats memory takes nobody along.
+//! Tries a model in a process of its own: one that crashes, hangs or eats memory ends alone.
 //!
 //! The child reads one line of JSON (`Trial`) and then the model's bytes from its standard input and
 //! answers with one line of JSON. It limits its own memory and processor time first.

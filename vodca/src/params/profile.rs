@@ -88,7 +88,7 @@ impl Params {
         }
     }
 
-    /// The safe controller (ARCHITECTURE, rules 1 to 11).
+    /// The safe controller (ARCHITECTURE, rules 1 to 15).
     pub fn safe() -> Self {
         let mut params = Self::paper();
         params.mpc.reference = Reference::Route;

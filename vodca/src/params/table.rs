@@ -105,7 +105,7 @@ const fn entry(
 use Allowed::{Above, Between, OneOf, Switch, Whole};
 
 /// Every parameter, in the order of the structs. Sources: "paper" is Gupta, Kumar, Tripathy and Shah;
-/// "safe" is our safe controller.
+/// "rule N" is a rule of the safe profile and "guarantee" its proof, both in docs/ARCHITECTURE.md.
 #[rustfmt::skip]
 pub const ENTRIES: &[Entry] = &[
     entry("model.sample_time", "s", Above(0.0, 10.0), "paper: h, Table I", "length of a tick; a plan of N steps looks N h ahead"),
@@ -113,7 +113,7 @@ pub const ENTRIES: &[Entry] = &[
     entry("model.min_separation", "m", Above(0.0, 100.0), "paper: r_min, Table I", "centre distance that is kept; discs have half of it as radius; cell.separation follows it unless it is set itself"),
     entry("mpc.state_weight", "1/m^2", Above(0.0, 1e6), "paper: Q = q I, Table I", "larger: faster to the reference"),
     entry("mpc.input_weight", "s^2/m^2", Above(0.0, 1e6), "paper: W = w I, Table I", "larger: smoother and slower; 1 is worse in dense scenes"),
-    entry("mpc.reference", "-", OneOf(&["set_point", "straight", "route"]), "paper: X^d; rule 1", "straight: no 45 degree start, no slow tail, and a free optimum without a QP; route: the same round obstacles and standing robots, deepest set-points first"),
+    entry("mpc.reference", "-", OneOf(&["set_point", "straight", "route"]), "paper: X^d; rules 1 and 12", "straight: no 45 degree start, no slow tail, and a free optimum without a QP; route: the same round obstacles and standing robots, deepest set-points first"),
     entry("vodca.rows", "-", OneOf(&["first", "each", "nearby"]), "paper: eq. er13", "first: one row as printed; each: one per conflicting hazard; nearby: all near ones at the first conflict"),
     entry("vodca.row_step", "-", OneOf(&["conflict", "before_conflict"]), "paper: k_c or k_c - 1", "prediction step on which a row acts"),
     entry("vodca.beyond_horizon", "-", OneOf(&["clamp", "skip", "limit"]), "paper: er13 is silent on k_c > N", "a conflict beyond the new horizon: row at its end, no row, or not looked for"),

@@ -29,7 +29,7 @@ pub const WALLS: &[&str] =
 /// Seeds of the layouts of a generated suite.
 pub const SEEDS: std::ops::Range<u64> = 100..200;
 
-/// A suite nobody knows.
+/// The name of a suite that does not exist.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("there is no suite `{0}`; the suites are: suite:all (all built-in scenarios), suite:quick ({n} of them), suite:tight and suite:walls (generated)", n = QUICK.len())]
 pub struct UnknownSuite(pub String);
