@@ -40,6 +40,9 @@ pub(super) fn tables(root: &Path) -> Result<Vec<NamedTable>, ResultsError> {
         ("suite".into(), beside(&quality, &families, &OTHERS.map(|(name, _)| name)).markdown()),
         ("targets".into(), targets(root, &quality, &suite("large_rings")?)?.markdown()),
     ];
+    for name in ["tight", "walls"] {
+        tables.push((name.into(), by_family(&suite(name)?).markdown()));
+    }
     for name in ["robustness", "random", "ablations", "patience"] {
         tables.push((name.into(), totals(&suite(name)?).markdown()));
     }
@@ -69,6 +72,24 @@ fn figures(row: &Row) -> [String; 4] {
         number(row.time().map(|time| time.median), 1),
         number(row.min_separation, 3),
     ]
+}
+
+/// A row per family, a column per controller, with the time of the slowest run.
+fn by_family(medians: &Medians) -> TextTable {
+    let controllers: Vec<&str> = medians.totals().map(|row| row.controller.as_str()).collect();
+    let columns = controllers.iter().map(|name| format!("`{name}`: arrived, path, s, least m, slowest s"));
+    let header: Vec<String> = std::iter::once("layouts".to_string()).chain(columns).collect();
+    let mut table = TextTable::new(&header.iter().map(String::as_str).collect::<Vec<_>>());
+    for family in medians.families().into_iter().chain([ALL]) {
+        let cell = |name: &&str| {
+            medians.row(family, name).map_or("-".into(), |row| {
+                let slowest = number(row.time().map(|time| time.most), 1);
+                figures(row).into_iter().chain([slowest]).collect::<Vec<_>>().join(", ")
+            })
+        };
+        table.row(std::iter::once(family.to_string()).chain(controllers.iter().map(cell)));
+    }
+    table
 }
 
 fn totals(medians: &Medians) -> TextTable {
