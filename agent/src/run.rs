@@ -8,7 +8,7 @@ use shared::os;
 use shared::services::ServiceError;
 use shared::stop::StopFlag;
 use shared::team::{FIRST_EPOCH, Setup, TeamError};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 use vodca::Position;
@@ -59,6 +59,12 @@ pub enum RunError {
         robot: usize,
         /// k.
         tick: u64,
+    },
+    /// Nobody is there to drive for.
+    #[error("{}: has the run ended? The process that owns it is gone; start robots while it runs", run.display())]
+    Ended {
+        /// The run's folder.
+        run: PathBuf,
     },
     /// The process that started this robot is gone.
     #[error("process {parent}, which started this robot, has ended")]
@@ -120,7 +126,18 @@ pub fn run<D: Drive>(launch: Launch<'_>, stop: &StopFlag, build: impl Fn(&Setup,
         return Err(RunError::NoSuchRobot { robot, last: team.robots - 1 });
     }
     let first = Episode::new(&setup, FIRST_EPOCH, robot, &build)?;
-    let mut exchange = exchange::open(team.exchange, &team.place, team.robots, robot, FIRST_EPOCH)?;
+    // Who comes too late would make files that nobody deletes any more.
+    let ended = || RunError::Ended { run: launch.run.to_owned() };
+    if !team.place.is_owned() {
+        return Err(ended());
+    }
+    let opened = exchange::open(team.exchange, &team.place, team.robots, robot, FIRST_EPOCH);
+    if !team.place.is_owned() {
+        drop(opened);
+        team.place.remove();
+        return Err(ended());
+    }
+    let mut exchange = opened?;
     exchange.publish(Report::presence(FIRST_EPOCH, robot, kind::READY, first.drive.measured()))?;
     serve(&setup, robot, exchange.as_mut(), first, &build, stop)
 }

@@ -77,9 +77,18 @@ impl Place {
         unreachable!("fewer than 2^32 teams at once")
     }
 
+    /// Whether the run that owns this place goes on: its process lives and has not tidied up.
+    pub fn is_owned(&self) -> bool {
+        !owner_is_gone(self.id()) && Path::new(&self.root).is_dir()
+    }
+
+    fn id(&self) -> &str {
+        self.prefix.trim_start_matches(PREFIX).trim_end_matches('_')
+    }
+
     /// Deletes every file of this place. Call it when all its processes have ended.
     pub fn remove(&self) {
-        remove_shared_memory(|prefix| prefix == self.prefix.trim_start_matches(PREFIX).trim_end_matches('_'));
+        remove_shared_memory(|prefix| prefix == self.id());
         let _ = fs::remove_dir_all(&self.root);
         let _ = fs::remove_dir(base()); // only when no other run is there
     }

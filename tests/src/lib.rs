@@ -133,6 +133,20 @@ impl Run {
         signal(self.pid(), name);
     }
 
+    /// Sends `signal` until the coordinator ends, as people press Ctrl-C again: where its parent ignores the signal, one
+    /// that comes before the coordinator can catch it is lost.
+    pub fn signal_until_ended(&mut self, name: &str) {
+        let (pid, child) = (self.child.id(), &mut self.child);
+        let mut sent: Option<Instant> = None;
+        wait_until("the run ends when asked to", || {
+            if sent.is_none_or(|sent| sent.elapsed() > Duration::from_secs(5)) {
+                signal(pid, name);
+                sent = Some(Instant::now());
+            }
+            !matches!(child.try_wait(), Ok(None))
+        });
+    }
+
     /// Waits for the end and checks that nothing was left behind.
     pub fn finish(mut self) -> Finished {
         let status = self.wait();

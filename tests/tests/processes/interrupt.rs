@@ -33,9 +33,9 @@ fn an_interrupt_between_two_real_time_ticks_ends_the_run() {
 fn an_interrupt_during_the_start_leaves_nothing() {
     // The start of 30 robots takes a few hundred milliseconds: hit it everywhere, the first instants above all.
     for milliseconds in [0, 1, 2, 3, 5, 8, 12, 20, 30, 50, 80, 120, 180, 250] {
-        let run = Run::start(Robots::Real, &format!("30 {ENDLESS}"));
+        let mut run = Run::start(Robots::Real, &format!("30 {ENDLESS}"));
         sleep(Duration::from_millis(milliseconds));
-        run.signal(if milliseconds % 2 == 0 { "INT" } else { "TERM" });
+        run.signal_until_ended(if milliseconds % 2 == 0 { "INT" } else { "TERM" });
         let finished = run.finish();
         // Before it can catch signals it is ended by them, and has made nothing yet.
         let caught = finished.status.code() == Some(0);

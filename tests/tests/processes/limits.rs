@@ -52,5 +52,5 @@ fn a_robot_of_a_run_that_has_ended_says_so() {
     let message = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!(output.status.code(), Some(1));
     assert!(message.contains("has the run ended"), "{message}");
-    run.finish();
+    run.finish(); // checks that the late robot left nothing in shared memory either
 }
