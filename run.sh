@@ -7,8 +7,9 @@ set -eu
 root=$(cd "$(dirname "$0")" && pwd)
 target=${CARGO_TARGET_DIR:-$root/target}
 
-command -v cargo >/dev/null || { echo "error: cargo is missing; install Rust with rustup (see the README)" >&2; exit 2; }
-command -v cc >/dev/null || { echo "error: a C compiler (cc) is missing; install it: apt-get install build-essential" >&2; exit 2; }
+missing() { echo "error: $1 is missing; install it: $2" >&2; exit 2; }
+command -v cargo >/dev/null || missing "the Rust compiler (cargo)" "apt-get install rustup && rustup default stable"
+command -v cc >/dev/null || missing "a C compiler (cc)" "apt-get install build-essential"
 ulimit -n "$(ulimit -H -n)" 2>/dev/null || true # every robot's process and service takes a few files
 
 cargo_release() { # cargo_release build|test ARGUMENTS

@@ -17,7 +17,6 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::OnceLock;
-use std::time::SystemTime;
 
 /// Where the policy server is: beside the coordinator, which looks for it there.
 fn policy_server() -> PathBuf {
@@ -31,31 +30,16 @@ fn learner() -> PathBuf {
     BUILT.get_or_init(|| alone("learner")).clone()
 }
 
-/// The program of `package`, built when it is missing or older than its sources; `cargo test --workspace` has
-/// built it, and building it again with the features of other packages would take minutes.
+/// The program of `package`, built by itself: only these tests need it. `cargo test --workspace` has built it with the
+/// same features, so that nothing is left to do.
 fn alone(package: &str) -> PathBuf {
-    let program = tests::program("vodca").with_file_name(package);
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-    let sources = newest(&root.join(package).join("src")).max(newest(&root.join("shared/src")));
-    if std::fs::metadata(&program).and_then(|meta| meta.modified()).is_ok_and(|built| built > sources) {
-        return program;
-    }
     let status = Command::new(env!("CARGO"))
         .args(["build", "--release", "--bins", "-p", package])
-        .current_dir(root)
+        .current_dir(tests::root())
         .status()
         .expect("cargo is there");
     assert!(status.success(), "{package} does not build");
-    program
-}
-
-/// When the newest file in `folder` was changed.
-fn newest(folder: &Path) -> SystemTime {
-    let entries = std::fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("it can be read").path());
-    let changed = |path: PathBuf| {
-        if path.is_dir() { newest(&path) } else { path.metadata().and_then(|meta| meta.modified()).expect("a file") }
-    };
-    entries.map(changed).max().unwrap_or(SystemTime::UNIX_EPOCH)
+    tests::program("vodca").with_file_name(package)
 }
 
 /// An actor for `robots` that answers everything with the horizon `steps`.

@@ -49,7 +49,7 @@ impl Training {
             assert!(self.child.try_wait().unwrap().is_none(), "the training ended early: {}", self.said());
             self.rows().len() >= rounds
         });
-        let sessions = processes(&self.folder()).into_iter().filter(|(_, line)| line.contains("coordinator\0rollout"));
+        let sessions = processes(&self.folder()).into_iter().filter(|(_, line)| line.contains("vodca\0rollout"));
         self.sessions.extend(sessions.map(|(pid, _)| pid));
         assert!(self.sessions.len() >= 2, "rollouts and evaluations");
     }
@@ -211,7 +211,7 @@ fn a_training_whose_robots_are_killed_says_so_and_ends() {
     let mut training = Training::begin("");
     training.wait_until_rounds(1);
     let rollouts = processes(&training.folder());
-    let of = |line: &str| line.contains("coordinator\0rollout") && line.contains("--stochastic");
+    let of = |line: &str| line.contains("vodca\0rollout") && line.contains("--stochastic");
     let (pid, _) = rollouts.iter().find(|(_, line)| of(line)).expect("it plays");
     signal(*pid, "KILL");
     training.sessions.retain(|session| session != pid); // its shared files are swept away by the next run

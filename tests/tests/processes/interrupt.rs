@@ -36,10 +36,12 @@ fn an_interrupt_during_the_start_leaves_nothing() {
         let mut run = Run::start(Robots::Real, &format!("30 {ENDLESS}"));
         sleep(Duration::from_millis(milliseconds));
         run.signal_until_ended(if milliseconds % 2 == 0 { "INT" } else { "TERM" });
+        let made = run.folder.exists();
         let finished = run.finish();
-        // Before it can catch signals it is ended by them, and has made nothing yet.
+        // Before it can catch signals it is ended by them, however late that is on a busy machine, and has made
+        // nothing yet.
         let caught = finished.status.code() == Some(0);
-        let uncaught = finished.status.signal().is_some() && milliseconds < 50;
+        let uncaught = finished.status.signal().is_some() && !made;
         assert!(caught || uncaught, "after {milliseconds} ms: {finished:?}");
     }
 }
