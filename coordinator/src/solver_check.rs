@@ -1,9 +1,7 @@
 //! What `--check-solver` found: every QP of a run solved by the ladder and by Clarabel.
 
-use crate::record::{RecordError, SUMMARY_FILE};
 use serde::{Deserialize, Serialize};
 use std::fmt;
-use std::path::Path;
 use vodca::mpc::cross_check::Comparison;
 
 /// An input that differs by more is a mistake of one of the two, m/s.
@@ -45,18 +43,6 @@ impl SolverCheck {
     /// Whether both agree on every QP that could be compared.
     pub fn passed(&self) -> bool {
         self.largest_difference <= TOLERANCE && self.verdicts_differ == 0
-    }
-
-    /// Adds the findings to the summary of the run recorded in `folder`.
-    pub fn add_to_summary(&self, folder: &Path) -> Result<(), RecordError> {
-        let path = folder.join(SUMMARY_FILE);
-        let failed = |reason: String| RecordError::Encode { path: path.clone(), what: "the solver check", reason };
-        let text = std::fs::read_to_string(&path).map_err(|error| failed(error.to_string()))?;
-        let mut summary: crate::summary::Summary =
-            serde_json::from_str(&text).map_err(|error| failed(error.to_string()))?;
-        summary.solver_check = Some(*self);
-        let text = serde_json::to_string_pretty(&summary).map_err(|error| failed(error.to_string()))?;
-        std::fs::write(&path, text + "\n").map_err(|source| RecordError::Write { path: path.clone(), source })
     }
 }
 

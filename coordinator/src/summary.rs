@@ -3,10 +3,12 @@
 use crate::guarantee;
 use crate::latency::{Latency, Percentiles};
 use crate::policy::PolicySummary;
+use crate::record::{RecordError, SUMMARY_FILE};
 use crate::solver_check::SolverCheck;
 use crate::tick_parts::{TickParts, TickTimes};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
+use std::path::Path;
 use vodca::metrics::RunSummary;
 use vodca::params::Params;
 use vodca::scenario::Scenario;
@@ -96,6 +98,17 @@ impl Summary {
             policy: None,
             solver_check: None,
         }
+    }
+
+    /// Adds what a check of the solvers found to the summary of the run recorded in `folder`.
+    pub fn add_solver_check(folder: &Path, check: SolverCheck) -> Result<(), RecordError> {
+        let path = folder.join(SUMMARY_FILE);
+        let failed = |reason: String| RecordError::Encode { path: path.clone(), what: "the solver check", reason };
+        let text = std::fs::read_to_string(&path).map_err(|error| failed(error.to_string()))?;
+        let mut summary: Self = serde_json::from_str(&text).map_err(|error| failed(error.to_string()))?;
+        summary.solver_check = Some(check);
+        let text = serde_json::to_string_pretty(&summary).map_err(|error| failed(error.to_string()))?;
+        std::fs::write(&path, text + "\n").map_err(|source| RecordError::Write { path: path.clone(), source })
     }
 }
 

@@ -3,7 +3,7 @@
 //! The default back-end, tract, is part of the binary; a real ONNX Runtime library can be named
 //! instead. One process has one back-end for its whole life.
 
-use crate::check::TryError;
+use crate::try_error::TryError;
 use ort::environment::Environment;
 use ort::session::Session;
 use ort::session::builder::GraphOptimizationLevel;

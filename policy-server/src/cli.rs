@@ -1,11 +1,9 @@
 //! The command line: one subcommand per file of `commands/`.
 
-use crate::actor::BackEnd;
-use crate::check::{Limits, Prober, probe};
+use crate::check::probe;
 use crate::commands::{bench, check, contract, control, eval, new, publish};
 use crate::serve;
-use clap::{Args, Parser, Subcommand};
-use std::path::PathBuf;
+use clap::{Parser, Subcommand};
 use std::process::ExitCode;
 
 /// Policies: check, publish and try ONNX actors, and swap them while the robots drive.
@@ -50,33 +48,6 @@ enum Command {
     /// Try one model in this process (started by the others, not by people)
     #[command(hide = true, name = probe::TRIAL_COMMAND)]
     Trial,
-}
-
-/// What computes, and what a model may use.
-#[derive(Clone, Debug, Args)]
-pub struct Means {
-    /// ONNX Runtime library (1.24 or later) to compute with instead of the embedded back-end
-    #[arg(long, value_name = "FILE")]
-    onnxruntime: Option<PathBuf>,
-    /// Largest model file
-    #[arg(long, value_name = "BYTES", default_value_t = Limits::default().bytes)]
-    max_bytes: u64,
-    /// Largest median processor time of one inference
-    #[arg(long, value_name = "US", default_value_t = Limits::default().inference_us)]
-    max_inference_us: u64,
-}
-
-impl Means {
-    /// The back-end that was chosen.
-    pub fn back_end(&self) -> BackEnd {
-        self.onnxruntime.clone().map_or(BackEnd::Embedded, BackEnd::Library)
-    }
-
-    /// Who tries models: this very program.
-    pub fn prober(&self) -> std::io::Result<Prober> {
-        let limits = Limits { bytes: self.max_bytes, inference_us: self.max_inference_us, ..Limits::default() };
-        Ok(Prober { program: std::env::current_exe()?, back_end: self.back_end(), limits })
-    }
 }
 
 impl Cli {

@@ -1,8 +1,9 @@
 //! `policy eval`: observation vectors in, what the policy makes of each out.
 
 use crate::actor::{Actor, Answer};
-use crate::check::{Case, ReferenceSet, TryError};
+use crate::check::{Case, ReferenceSet};
 use crate::sample::{Choice, choose};
+use crate::try_error::TryError;
 use serde::Serialize;
 use vodca::Position;
 use vodca::horizon::Horizon;

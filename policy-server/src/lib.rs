@@ -11,6 +11,8 @@ mod commands;
 pub mod eval;
 pub mod hot_swap;
 pub mod loader;
+mod means;
 pub mod random_actor;
 pub mod sample;
 pub mod serve;
+mod try_error;

@@ -2,8 +2,9 @@
 //! Runs in a thread of its own: loading never touches the serving path.
 
 use crate::actor::{BackEndError, Runtime};
-use crate::check::{Candidate, CheckError, Prober, TryError, look, try_out};
+use crate::check::{Candidate, CheckError, Prober, look, try_out};
 use crate::hot_swap::{Event, Loaded, Order};
+use crate::try_error::TryError;
 use policy::folder::{FolderError, PolicyFolder, Rejected, Serving, Status, Version};
 use std::collections::BTreeSet;
 use std::path::PathBuf;

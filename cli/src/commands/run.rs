@@ -12,7 +12,7 @@ use coordinator::record::about::{Machine, Versions};
 use coordinator::record::{About, RunFolder};
 use coordinator::run::{Options, Outcome, Run, RunTick};
 use coordinator::session::Session;
-use coordinator::summary::End;
+use coordinator::summary::{End, Summary};
 use coordinator::view::{Views, Wanted};
 use evaluation::page::recorded::Recorded;
 use shared::exchange::Kind;
@@ -179,7 +179,7 @@ fn check_solver(folder: &Path, ending: Ending) -> Ending {
         stdout::line(format_args!("{:<16}checked other QPs than the run's: {difference}", "solver"))?;
         return Ok(exit::Outcome::Failed);
     }
-    check.add_to_summary(folder).map_err(Failure::broken)?;
+    Summary::add_solver_check(folder, check).map_err(Failure::broken)?;
     stdout::line(format_args!("{:<16}{check}", "solver"))?;
     if check.passed() { ending } else { ending.and(Ok(exit::Outcome::Failed)) }
 }

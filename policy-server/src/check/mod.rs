@@ -15,7 +15,8 @@ pub mod probe;
 mod reference;
 mod try_out;
 
-pub use error::{CheckError, TryError};
+pub use crate::try_error::TryError;
+pub use error::CheckError;
 pub use look::{Candidate, look, look_at};
 pub use probe::Prober;
 pub use reference::{Case, ReferenceSet};

@@ -1,7 +1,7 @@
 //! `policy bench`: how long loading and inference take, as JSON. `./run.sh bench policy` asks for it.
 
 use crate::actor::{Actor, Answer, Runtime};
-use crate::cli::Means;
+use crate::means::Means;
 use crate::random_actor::random_actor;
 use serde::Serialize;
 use std::process::ExitCode;

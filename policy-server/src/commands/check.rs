@@ -1,6 +1,6 @@
 //! `policy check`: may a model act?
 
-use crate::cli::Means;
+use crate::means::Means;
 use policy::folder::resolve;
 use std::path::PathBuf;
 use std::process::ExitCode;

@@ -1,8 +1,8 @@
 //! `policy status`, `swap` and `rollback` of a run: all through the run's policies folder, so they
 //! work on whatever server serves it, now or after a restart.
 
-use crate::cli::Means;
 use crate::loader::import;
+use crate::means::Means;
 use anyhow::{Context, bail};
 use policy::folder::{PolicyFolder, Serving, Status, Version, resolve};
 use policy::run_folder;

@@ -2,8 +2,8 @@
 
 use crate::actor::{Actor, Runtime};
 use crate::check::look;
-use crate::cli::Means;
 use crate::eval::evaluate;
+use crate::means::Means;
 use crate::sample::Choice;
 use anyhow::Context;
 use policy::folder::resolve;

@@ -1,8 +1,8 @@
 //! `policy new`: a valid actor that was never trained.
 
 use crate::actor::{Actor, Runtime};
-use crate::cli::Means;
 use crate::eval::reference_set;
+use crate::means::Means;
 use crate::random_actor::random_actor;
 use policy::folder::PolicyFolder;
 use std::path::PathBuf;

@@ -1,7 +1,7 @@
 //! `policy publish`: a checked model becomes the newest version of a policies folder.
 
-use crate::cli::Means;
 use crate::loader::import;
+use crate::means::Means;
 use policy::folder::{PolicyFolder, resolve};
 use std::path::PathBuf;
 use std::process::ExitCode;
