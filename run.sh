@@ -8,7 +8,7 @@ root=$(cd "$(dirname "$0")" && pwd)
 target=${CARGO_TARGET_DIR:-$root/target}
 
 missing() { echo "error: $1 is missing; install it: $2" >&2; exit 2; }
-command -v cargo >/dev/null || missing "the Rust compiler (cargo)" "apt-get install rustup && rustup default stable"
+command -v cargo >/dev/null || missing "the Rust compiler (cargo)" "with rustup from https://rustup.rs, on Debian 13 apt-get install rustup && rustup default stable"
 command -v cc >/dev/null || missing "a C compiler (cc)" "apt-get install build-essential"
 ulimit -n "$(ulimit -H -n)" 2>/dev/null || true # every robot's process and service takes a few files
 
