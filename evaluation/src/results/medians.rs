@@ -184,7 +184,7 @@ impl Medians {
         self.0.iter().filter(move |row| single || row.family == ALL)
     }
 
-    /// The families in their order, [`ALL`] excepted.
+    /// The families in their order, `ALL` excepted.
     pub fn families(&self) -> Vec<&str> {
         distinct(self.0.iter().map(|row| row.family.as_str()).filter(|family| *family != ALL))
     }
