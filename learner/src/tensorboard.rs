@@ -2,7 +2,7 @@
 //! `crc32c` and `prost`.
 //!
 //! The file is a list of records (TFRecord): length as u64, its checksum, the bytes, their checksum,
-//! all little-endian. Each record is an [`Event`] of `event.proto`.
+//! all little-endian. Each record is an `Event` of `event.proto`.
 
 use prost::Message;
 use std::fs::File;
