@@ -7,6 +7,7 @@ use coordinator::tick_parts::PARTS;
 use evaluation::text_table::TextTable;
 use std::fmt::Write as _;
 use std::path::Path;
+use vodca::way::LowerBound;
 
 /// The table and the summary of a run recorded in `folder`.
 pub fn report(summary: &Summary, folder: &Path) -> String {
@@ -52,6 +53,11 @@ fn figures(summary: &Summary, folder: &Path) -> String {
         End::Interrupted => format!("no: asked to stop when {} of {} had arrived", arrived(summary), run.robots.len()),
         End::PeerLost => "no: a robot's process was lost".into(),
     };
+    let bound = summary.lower_bound.map_or("- (for up to 16 robots)".into(), |LowerBound { path, time }| {
+        let times = |time_s: f64| format!(", {:.3} of it here", time_s / time);
+        let of_time = run.completion_time.map_or(String::new(), times);
+        format!("{path:.2} m, {:.3} of it here; {time:.1} s{of_time}", run.path_cost / path)
+    });
     let lines = [
         ("success", ended),
         ("ticks", run.ticks.to_string()),
@@ -65,6 +71,7 @@ fn figures(summary: &Summary, folder: &Path) -> String {
                 run.straight_line
             ),
         ),
+        ("at the least", bound),
         ("min separation", format!("{} (between samples)", metres(run.min_separation))),
         ("below r_min", format!("{} ticks, {} pairs", run.ticks_below_min_separation, run.pairs_below_min_separation)),
         ("collisions", format!("{} pairs", run.collisions)),

@@ -178,7 +178,6 @@ pub struct Run {
     // Dropped in this order: the policy server and the robots before the files of both.
     horizons: RunHorizons,
     team: ProcessTeam,
-    stop: StopFlag,
     until: Instant,
     max_ticks: u64,
 }
@@ -199,7 +198,7 @@ impl Run {
             None => RunHorizons::table(&spec, scenario.robots.len(), team.seed(), params.horizon.jitter)?,
         };
         team.start_robots()?;
-        Ok(Self { horizons, team, stop: stop.clone(), until, max_ticks })
+        Ok(Self { horizons, team, until, max_ticks })
     }
 
     /// Runs until everybody has arrived, and ends the team in order whatever became of it. `metrics` are new and
@@ -291,11 +290,6 @@ impl Run {
     /// Where the run's shared files are.
     pub fn place(&self) -> &Place {
         self.team.place()
-    }
-
-    /// Whether somebody has asked for its end.
-    pub fn is_stopped(&self) -> bool {
-        self.stop.is_set()
     }
 }
 

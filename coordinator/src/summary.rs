@@ -13,9 +13,12 @@ use vodca::metrics::RunSummary;
 use vodca::params::Params;
 use vodca::scenario::Scenario;
 use vodca::step::Step;
+use vodca::way::LowerBound;
 
 /// Version of the format.
 pub const VERSION: u32 = 1;
+/// Teams of more robots are not held against a lower bound: crowds, not ways, decide how long they take.
+const BOUNDED: usize = 16;
 
 /// How a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -52,6 +55,9 @@ pub struct Summary {
     /// The figures that depend on the trajectory alone.
     #[serde(flatten)]
     pub run: RunSummary,
+    /// What robots that meet nobody need, for teams of up to [`BOUNDED`] robots.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lower_bound: Option<LowerBound>,
     /// Duration of a tick as the coordinator sees it.
     pub tick_latency: Percentiles,
     /// Where its time goes ([`crate::tick_parts::PARTS`], and `announce`), over all robots and ticks.
@@ -91,6 +97,7 @@ impl Summary {
             guarantee: guarantee.statement,
             guarantee_broken: guarantee.broken,
             run,
+            lower_bound: (scenario.robots.len() <= BOUNDED).then(|| LowerBound::of(scenario, params)),
             tick_latency: timings.tick.percentiles(),
             tick_parts: timings.parts.percentiles(),
             lateness: None,

@@ -16,12 +16,12 @@ use vodca::layout::Layout;
 use vodca::params::{Params, Profile};
 use vodca::prediction::Prediction;
 use vodca::reference;
-use vodca::right_of_way::Regard;
 use vodca::safety::cell::{Cell, Present};
 use vodca::safety::last_check::nearest_safe;
 use vodca::scenario::{Scenario, set_up};
 use vodca::team::Team;
 use vodca::vodca_controller::{VodcaController, hazards};
+use vodca::way::right_of_way::Regard;
 
 /// The tick that is repeated: everybody is in everybody's way.
 const TICK: u64 = 25;

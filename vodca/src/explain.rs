@@ -9,10 +9,10 @@ use crate::controller::{Neighbour, View};
 use crate::layout::Layout;
 use crate::mpc::problem::Row;
 use crate::params::{ControllerKind, Params};
-use crate::right_of_way::regard_others;
-use crate::standing::Standing;
 use crate::step::Step;
 use crate::vodca_controller::hazards;
+use crate::way::Standing;
+use crate::way::right_of_way::regard_others;
 use std::sync::Arc;
 
 /// Follows a run step by step and explains its newest tick.

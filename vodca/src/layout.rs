@@ -1,10 +1,10 @@
 //! What every robot knows for the whole run.
 
 use crate::Position;
-use crate::filling::Filling;
 use crate::geometry::Disc;
-use crate::route::Route;
 use crate::scenario::Scenario;
+use crate::way::Filling;
+use crate::way::Route;
 
 /// Set-points, sizes and obstacles of a team.
 #[derive(Clone, Debug)]

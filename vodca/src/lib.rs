@@ -69,12 +69,9 @@
 
 pub mod baseline;
 pub mod body;
-pub mod bounds;
-pub mod chains;
 pub mod conflict;
 pub mod controller;
 pub mod explain;
-pub mod filling;
 pub mod geometry;
 pub mod hearing;
 pub mod horizon;
@@ -87,17 +84,15 @@ pub mod play;
 pub mod prediction;
 pub mod random;
 pub mod reference;
-pub mod right_of_way;
 pub mod robot;
-pub mod route;
 pub mod safety;
 pub mod scenario;
 pub mod separation;
-pub mod standing;
 pub mod step;
 pub mod suggest;
 pub mod team;
 pub mod vodca_controller;
+pub mod way;
 
 /// A point in the plane, metres, world frame.
 pub type Position = nalgebra::Vector2<f64>;

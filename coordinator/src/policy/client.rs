@@ -198,7 +198,10 @@ impl PolicyClient {
         self.horizons.extend(answer.horizons(robots).into_iter().flatten());
         match self.horizons.len() == robots {
             true => Ok(&self.horizons),
-            false => Err(self.no_answer(tick, "its answer is none; is the policy server of another version?")),
+            false => Err(self.no_answer(
+                tick,
+                "it is not a horizon in 1..=49 for every robot; is the policy server of another version?",
+            )),
         }
     }
 

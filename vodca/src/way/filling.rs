@@ -4,10 +4,10 @@
 //! the first layer; what is open once they are left free, the second; and so on, as one peels an onion. Filled
 //! from the last layer to the first, every set-point is open when its turn comes.
 
+use super::chains::Chains;
+use super::corners::Closed;
 use crate::Position;
-use crate::chains::Chains;
 use crate::geometry::Disc;
-use crate::route::Closed;
 
 /// Farther than any layout reaches, m.
 const FAR: f64 = 1e7;

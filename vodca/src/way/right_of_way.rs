@@ -1,17 +1,16 @@
 //! Who goes first, and where a robot looks in a tick: what every robot finds from the positions, set-points and
 //! aims that everybody broadcasts.
 //!
-//! Set-points that close each other in are filled from the deepest to the outermost ([`crate::filling`]). Whoever
+//! Set-points that close each other in are filled from the deepest to the outermost ([`super::Filling`]). Whoever
 //! waits, or is near its place and can make room, lets pass who has farther to go. Whoever stands where nothing
-//! gives way stays, and is walked round ([`crate::standing`]), unless those who stand have shut the other in.
+//! gives way stays, and is walked round ([`Standing`]), unless those who stand have shut the other in.
 
+use super::{Path, Rest, Standing};
 use crate::Position;
 use crate::conflict::memory::ConflictMemory;
 use crate::controller::View;
 use crate::layout::Layout;
 use crate::params::{Params, Reference};
-use crate::route::{Path, Rest};
-use crate::standing::Standing;
 
 /// Share of min_separation up to which a robot's distance to its set-point lets those who wait for it go on.
 const TAKEN: f64 = 0.2;

@@ -1,14 +1,15 @@
 //! Robots that stand where they want to be: others walk round them.
 //!
-//! Routes ([`crate::route`]) lead round what never moves. A robot whose disc covers its set-point stands as well,
+//! Routes ([`super::Route`]) lead round what never moves. A robot whose disc covers its set-point stands as well,
 //! for the time being.
 
+use super::chains::Chains;
+use super::corners::{Closed, is_free};
+use super::robot_set::{MOST_STANDING, RobotSet};
 use crate::Position;
-use crate::chains::Chains;
 use crate::controller::View;
 use crate::layout::Layout;
 use crate::params::Params;
-use crate::route::{self, Closed, is_free};
 
 /// What stands, seen by one robot in one tick.
 #[derive(Clone, Debug)]
@@ -17,9 +18,9 @@ pub struct Standing {
     closed: Vec<Closed>,
     robots: usize,
     /// The robots that stand, by number.
-    pub who: route::Standing,
+    pub who: RobotSet,
     /// Those of them who cannot make room.
-    pub tight: route::Standing,
+    pub tight: RobotSet,
     chains: Chains,
 }
 
@@ -29,8 +30,8 @@ impl Standing {
         Self {
             closed: Vec::with_capacity(discs),
             robots: 0,
-            who: route::Standing::default(),
-            tight: route::Standing::default(),
+            who: RobotSet::default(),
+            tight: RobotSet::default(),
             chains: Chains::with_capacity(discs),
         }
     }
@@ -47,7 +48,7 @@ impl Standing {
                 continue;
             }
             self.closed.push(Closed { centre: neighbour.set_point, radius: owed(layout.robot_extra[other]) });
-            if view.neighbours.len() > route::MOST_STANDING {
+            if view.neighbours.len() > MOST_STANDING {
                 continue;
             }
             self.who.add(other);

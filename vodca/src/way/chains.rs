@@ -1,25 +1,25 @@
 //! Closed chains of overlapping discs: whether they separate two places.
 
+use super::corners::Closed;
 use crate::Position;
-use crate::route::Closed;
 
 /// Chains of discs (union and find), each disc with the parity of the crossings on the way to its chain's first disc.
 #[derive(Clone, Debug, Default)]
-pub struct Chains {
+pub(super) struct Chains {
     first: Vec<usize>,
     odd: Vec<bool>,
 }
 
 impl Chains {
     /// Room for `discs`.
-    pub fn with_capacity(discs: usize) -> Self {
+    pub(super) fn with_capacity(discs: usize) -> Self {
         Self { first: Vec::with_capacity(discs), odd: Vec::with_capacity(discs) }
     }
 
     /// Whether `discs` close every way between two places outside of them. They do exactly where a closed chain of
     /// overlapping discs runs round one place and not the other, and such a chain crosses the straight line between
     /// them an odd number of times: the line joining the centres of two overlapping discs lies within both.
-    pub fn separate(&mut self, discs: &[Closed], from: Position, to: Position) -> bool {
+    pub(super) fn separate(&mut self, discs: &[Closed], from: Position, to: Position) -> bool {
         self.first.clear();
         self.first.extend(0..discs.len());
         self.odd.clear();

@@ -1,141 +1,12 @@
-//! Ways round the obstacles: where a robot has to look to walk the shortest one to its set-point.
-//!
-//! A plan sees an obstacle only along its horizon and slides past on one side. Where another obstacle or a
-//! robot that has arrived closes that side, it stays in the pocket for ever. The shortest way leads round.
+//! The shortest ways of one robot round what stands, from anywhere to its set-point.
 
+use super::corners::{Closed, Corners, between, is_free};
+use super::path::{Path, REACHED};
+use super::robot_set::{MOST_STANDING, RobotSet};
 use crate::Position;
-use crate::geometry::{Disc, turned};
-use std::f64::consts::{PI, TAU};
+use crate::geometry::Disc;
+use std::f64::consts::TAU;
 use std::sync::Arc;
-
-/// Corners of the polygon that is walked round an obstacle, fewest and most: 10 % and 2 % longer than its
-/// circle.
-const CORNERS: (usize, usize) = (6, 12);
-/// Corners in all, where there are many obstacles: the work grows with their square times the obstacles.
-const TOGETHER: usize = 600;
-/// By how much a way may cut into a disc, as a share of its radius: robots slide along it.
-const CUT: f64 = 1e-3;
-/// Nearer corners than this have been reached, m.
-const REACHED: f64 = 1e-6;
-
-/// A disc that the centre of a robot must not enter.
-#[derive(Clone, Copy, Debug)]
-pub struct Closed {
-    /// Its centre, m.
-    pub centre: Position,
-    /// Its radius, m.
-    pub radius: f64,
-}
-
-/// Teams of more robots walk round obstacles only, and slide past those who stand: corners round every set-point, and who
-/// sees whom, would take more memory and time than such a team has.
-pub const MOST_STANDING: usize = 64;
-
-/// Robots by number that stand at their set-points; of teams of up to [`MOST_STANDING`].
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Standing(u64);
-
-impl Standing {
-    /// Adds `robot`, below [`MOST_STANDING`].
-    pub fn add(&mut self, robot: usize) {
-        self.0 |= 1 << robot;
-    }
-
-    /// These without `robot`.
-    fn without(self, robot: usize) -> Self {
-        if robot < MOST_STANDING { Self(self.0 & !(1 << robot)) } else { self }
-    }
-
-    /// Whether nobody stands.
-    pub fn is_empty(&self) -> bool {
-        self.0 == 0
-    }
-
-    /// Of these, the ones of `other`.
-    pub fn among(&self, other: &Self) -> Self {
-        Self(self.0 & other.0)
-    }
-
-    /// How many there are.
-    pub fn count(&self) -> u32 {
-        self.0.count_ones()
-    }
-
-    fn meets(&self, other: &Self) -> bool {
-        self.0 & other.0 != 0
-    }
-}
-
-/// The corners round a set of obstacles and of set-points that robots of one size can reach, and who sees whom.
-#[derive(Debug)]
-struct Corners {
-    closed: Vec<Closed>,
-    /// The set-points by robot: closed while somebody stands there.
-    places: Vec<Closed>,
-    at: Vec<Position>,
-    /// How many of them, the first ones, are round obstacles.
-    fixed: usize,
-    /// By corner: the other corners in a straight line from it, with the set-points in between.
-    seen: Vec<Vec<(usize, Standing)>>,
-}
-
-impl Corners {
-    /// The corners round `obstacles` and `places`, the set-points with their robots' radii beyond
-    /// min_separation / 2; `separation` is what is owed to a disc of radius min_separation / 2, m.
-    fn new(obstacles: &[Disc], places: &[Disc], separation: f64) -> Self {
-        let close = |disc: &Disc| Closed { centre: disc.centre, radius: separation + disc.extra };
-        let closed: Vec<Closed> = obstacles.iter().map(close).collect();
-        let places: Vec<Closed> = places.iter().map(close).collect();
-        let corners = (TOGETHER / (closed.len() + places.len()).max(1)).clamp(CORNERS.0, CORNERS.1);
-        let out = 1.0 / (PI / corners as f64).cos();
-        let round = |disc: &Closed| {
-            let (centre, radius) = (disc.centre, disc.radius * out);
-            (0..corners).map(move |corner| {
-                let (sin, cos) = (TAU * corner as f64 / corners as f64).sin_cos();
-                centre + Position::new(cos, sin) * radius
-            })
-        };
-        let open = |corner: &Position| is_open(&closed, *corner);
-        let mut at: Vec<Position> = closed.iter().flat_map(round).filter(open).collect();
-        let fixed = at.len();
-        at.extend(places.iter().flat_map(round).filter(open));
-        // Gates between two discs that leave hardly more than a robot needs: no corner fits in between.
-        for (index, a) in places.iter().enumerate() {
-            for b in places[..index].iter().chain(&closed) {
-                let wide = (a.centre - b.centre).norm() / (a.radius + b.radius);
-                if (1.0..1.2).contains(&wide) {
-                    let share = a.radius / (a.radius + b.radius);
-                    at.extend(Some(a.centre + (b.centre - a.centre) * share).filter(open));
-                }
-            }
-        }
-        let mut seen: Vec<Vec<(usize, Standing)>> = vec![Vec::new(); at.len()];
-        for a in 0..at.len() {
-            for b in 0..a {
-                if is_free(&closed, at[a], at[b]) {
-                    let between = between(&places, at[a], at[b]);
-                    seen[a].push((b, between));
-                    seen[b].push((a, between));
-                }
-            }
-        }
-        Self { closed, places, at, fixed, seen }
-    }
-}
-
-/// The set-points that a straight way leads over.
-fn between(places: &[Closed], from: Position, to: Position) -> Standing {
-    let mut between = Standing::default();
-    let way = to - from;
-    let length_2 = way.norm_squared();
-    for (robot, place) in places.iter().enumerate() {
-        let along = ((place.centre - from).dot(&way) / length_2).clamp(0.0, 1.0);
-        if (from + way * along - place.centre).norm() < place.radius * (1.0 - CUT) {
-            between.add(robot);
-        }
-    }
-    between
-}
 
 /// All ways of one robot to its set-point.
 #[derive(Clone, Debug)]
@@ -143,11 +14,11 @@ pub struct Route {
     set_point: Position,
     corners: Arc<Corners>,
     /// By corner: the set-points between it and the end of the way; `None`: an obstacle is.
-    sees_end: Vec<Option<Standing>>,
+    sees_end: Vec<Option<RobotSet>>,
     /// Places right before the set-point from which a robot gets in between those who stand beside it, and the
     /// set-points between each corner and them.
     entry: Position,
-    sees_entry: Vec<Option<Standing>>,
+    sees_entry: Vec<Option<RobotSet>>,
     /// The rest of the way while nobody stands.
     alone: Rest,
 }
@@ -155,7 +26,7 @@ pub struct Route {
 /// What is left of a robot's way from every corner while certain robots stand.
 #[derive(Clone, Debug, Default)]
 pub struct Rest {
-    standing: Standing,
+    standing: RobotSet,
     /// By corner: what is left from there, m; infinite where no way leads on.
     left: Vec<f64>,
     /// By corner: where the way leads next.
@@ -173,64 +44,6 @@ enum Next {
     Entry,
     /// To another corner.
     Corner(usize),
-}
-
-/// Bends of a way that a plan can reach.
-const BENDS: usize = 6;
-
-/// A way as a chain of straight legs.
-#[derive(Clone, Copy, Debug)]
-pub struct Path {
-    points: [Position; BENDS],
-    count: usize,
-    /// Its whole length, m.
-    pub length: f64,
-}
-
-impl Path {
-    /// A way without bends.
-    pub fn straight(from: Position, to: Position) -> Self {
-        Self { points: [to; BENDS], count: 1, length: (to - from).norm() }
-    }
-
-    /// The ends of its legs, m. A way with more bends than are kept ends at one.
-    pub fn points(&self) -> &[Position] {
-        &self.points[..self.count]
-    }
-
-    /// The point as far off as the way is long, in the direction in which it begins.
-    pub fn ahead(&self, from: Position) -> Position {
-        let first = self.points[0] - from;
-        if self.count == 1 { self.points[0] } else { from + first * (self.length / first.norm().max(REACHED)) }
-    }
-
-    /// The point that is `distance` (m) along the way from `from`.
-    pub fn after(&self, mut from: Position, mut distance: f64) -> Position {
-        for &to in self.points() {
-            let leg = (to - from).norm();
-            if leg > distance {
-                return from + (to - from) * (distance / leg);
-            }
-            distance -= leg;
-            from = to;
-        }
-        from
-    }
-
-    /// The same way, turned about `from` by `angle` to the left, rad.
-    pub fn turned(mut self, from: Position, angle: f64) -> Self {
-        if angle != 0.0 {
-            self.points.iter_mut().for_each(|point| *point = from + turned(*point - from, angle));
-        }
-        self
-    }
-
-    fn push(&mut self, point: Position) {
-        if self.count < BENDS {
-            self.points[self.count] = point;
-            self.count += 1;
-        }
-    }
 }
 
 impl Rest {
@@ -280,17 +93,17 @@ impl Route {
         let mut route =
             Self { set_point, corners: corners.clone(), sees_end, entry, sees_entry, alone: Rest::default() };
         let mut rest = Rest { left: vec![0.0; at.len()], next: vec![Next::End; at.len()], ..Rest::default() };
-        route.walk_back(Standing::default(), &mut rest);
+        route.walk_back(RobotSet::default(), &mut rest);
         route.alone = rest;
         route
     }
 
     /// Shortest ways from every corner while `standing` are in the way (Dijkstra 1959).
-    fn walk_back(&self, standing: Standing, rest: &mut Rest) {
+    fn walk_back(&self, standing: RobotSet, rest: &mut Rest) {
         let Corners { at, fixed, seen, .. } = &*self.corners;
         let Rest { left, next, open, .. } = rest;
         let used = if standing.is_empty() { *fixed } else { at.len() };
-        let clear = |between: &Option<Standing>| between.is_some_and(|between| !between.meets(&standing));
+        let clear = |between: &Option<RobotSet>| between.is_some_and(|between| !between.meets(&standing));
         let last = (self.set_point - self.entry).norm();
         for (corner, (left, next)) in left.iter_mut().zip(next.iter_mut()).enumerate() {
             *next = Next::End;
@@ -341,7 +154,7 @@ impl Route {
         if is_free(&self.corners.closed, from, self.set_point) {
             return straight;
         }
-        self.path_past(from, Standing::default(), &self.alone).unwrap_or(straight)
+        self.path_past(from, RobotSet::default(), &self.alone).unwrap_or(straight)
     }
 
     /// The same round those of `standing` who are in the way; as if they were not there where no way leads
@@ -352,8 +165,8 @@ impl Route {
     pub fn path_round(
         &self,
         from: Position,
-        standing: Standing,
-        tight: Standing,
+        standing: RobotSet,
+        tight: RobotSet,
         price: f64,
         rests: &mut [Rest; 2],
     ) -> Path {
@@ -372,17 +185,17 @@ impl Route {
     }
 
     /// The set-points that a path leads over.
-    fn met(&self, from: Position, path: &Path) -> Standing {
+    fn met(&self, from: Position, path: &Path) -> RobotSet {
         let starts = std::iter::once(&from).chain(path.points());
-        let mut met = Standing::default();
+        let mut met = RobotSet::default();
         for (from, to) in starts.zip(path.points()) {
             let between = between(&self.corners.places, *from, *to);
-            met.0 |= between.0;
+            met = met.with(between);
         }
         met
     }
 
-    fn shortest(&self, from: Position, alone: Path, standing: Standing, rest: &mut Rest) -> Path {
+    fn shortest(&self, from: Position, alone: Path, standing: RobotSet, rest: &mut Rest) -> Path {
         let Corners { closed, places, .. } = &*self.corners;
         let is_clear =
             |from: Position, to: Position| standing.is_empty() || !between(places, from, to).meets(&standing);
@@ -404,16 +217,16 @@ impl Route {
             (Some(through), Some(round)) if round.length < through.length => Some(round),
             (through, round) => through.or(round),
         };
-        best.unwrap_or(Path { length: f64::INFINITY, ..alone })
+        best.unwrap_or(alone.of_length(f64::INFINITY))
     }
 
     /// Whether nobody of `standing` is in the way of `path`, which keeps clear of the obstacles.
-    fn is_clear(&self, from: Position, path: &Path, standing: Standing) -> bool {
+    fn is_clear(&self, from: Position, path: &Path, standing: RobotSet) -> bool {
         let starts = std::iter::once(&from).chain(path.points());
         starts.zip(path.points()).all(|(from, to)| !between(&self.corners.places, *from, *to).meets(&standing))
     }
 
-    fn path_past(&self, from: Position, standing: Standing, rest: &Rest) -> Option<Path> {
+    fn path_past(&self, from: Position, standing: RobotSet, rest: &Rest) -> Option<Path> {
         let Corners { closed, places, at, .. } = &*self.corners;
         let (mut first, mut shortest) = (None, f64::INFINITY);
         for (corner, (place, left)) in at.iter().zip(&rest.left).enumerate() {
@@ -428,7 +241,7 @@ impl Route {
             }
         }
         let mut corner = first?;
-        let mut path = Path { length: shortest, ..Path::straight(from, at[corner]) };
+        let mut path = Path::straight(from, at[corner]).of_length(shortest);
         loop {
             match rest.next[corner] {
                 Next::Corner(next) => {
@@ -450,12 +263,12 @@ impl Route {
 }
 
 /// [`between`], without the place of `robot` itself.
-fn between_but(places: &[Closed], robot: usize, from: Position, to: Position) -> Standing {
+fn between_but(places: &[Closed], robot: usize, from: Position, to: Position) -> RobotSet {
     between(places, from, to).without(robot)
 }
 
-/// The place `reach` (two separations, m) before the set-point of `robot` from where it gets in between all others with the most
-/// room.
+/// The place `reach` (two separations, m) before the set-point of `robot` from where it gets in between all others
+/// with the most room.
 fn entry(closed: &[Closed], places: &[Closed], robot: usize, set_point: Position, reach: f64) -> Position {
     const DIRECTIONS: usize = 128;
     let others = || {
@@ -484,27 +297,9 @@ fn entry(closed: &[Closed], places: &[Closed], robot: usize, set_point: Position
     best.1
 }
 
-/// Whether a robot can stand there.
-fn is_open(closed: &[Closed], point: Position) -> bool {
-    closed.iter().all(|disc| (point - disc.centre).norm() >= disc.radius * (1.0 - CUT))
-}
-
-/// Whether the straight way keeps out of every disc. One that starts inside may lead out, not deeper.
-pub fn is_free(closed: &[Closed], from: Position, to: Position) -> bool {
-    let way = to - from;
-    let length_2 = way.norm_squared();
-    closed.iter().all(|disc| {
-        let along = (disc.centre - from).dot(&way);
-        if along <= 0.0 {
-            return true; // The disc lies behind.
-        }
-        let nearest = from + way * (along / length_2).min(1.0);
-        (nearest - disc.centre).norm() >= disc.radius * (1.0 - CUT)
-    })
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::corners::CUT;
     use super::*;
     use proptest::prelude::*;
 
@@ -563,13 +358,13 @@ mod tests {
         let places = ends.map(|centre| Disc { centre, extra: 0.0 });
         let route = Route::of_team([&ends], &[1.5; 2], &places, &[])[0].remove(0);
         let mut rests = [Rest::of(&route), Rest::of(&route)];
-        let mut stands = Standing::default();
+        let mut stands = RobotSet::default();
         let mut way = |stands, tight, price| route.path_round(Position::zeros(), stands, tight, price, &mut rests);
-        assert_eq!(way(stands, Standing::default(), 3.0).points(), &ends[..1]);
+        assert_eq!(way(stands, RobotSet::default(), 3.0).points(), &ends[..1]);
         stands.add(1);
-        let round = way(stands, Standing::default(), 3.0);
+        let round = way(stands, RobotSet::default(), 3.0);
         assert!(round.points().len() > 1 && round.length < 10.8 && round.points()[0].y < 0.0);
-        assert_eq!(way(stands, Standing::default(), 0.0).points(), &ends[..1], "it makes room");
+        assert_eq!(way(stands, RobotSet::default(), 0.0).points(), &ends[..1], "it makes room");
         assert!(way(stands, stands, 0.0).points().len() > 1, "it cannot make room");
     }
 
