@@ -26,7 +26,7 @@ impl Controller for Straight {
             rows: 0,
             level: Level::Baseline,
             status: Status::Solved,
-            shielded: false,
+            filtered: false,
             detect_ns: 0,
             solve_ns: 0,
         }

@@ -12,9 +12,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 use vodca::Position;
-use vodca::hearing::Hearing;
 use vodca::horizon::{Horizon, MAX_HORIZON};
 use vodca::layout::Layout;
+use vodca::neighbour_estimates::NeighbourEstimates;
 use vodca::robot::Robot;
 use vodca::scenario::ScenarioError;
 use vodca::step::Step;
@@ -91,7 +91,7 @@ pub trait Drive {
     fn measured(&self) -> Position;
 
     /// Plans tick `tick` and moves; `hearing` holds the others' plans of the tick before.
-    fn step(&mut self, tick: u64, horizon: Horizon, hearing: &Hearing) -> Step;
+    fn step(&mut self, tick: u64, horizon: Horizon, hearing: &NeighbourEstimates) -> Step;
 }
 
 impl Drive for Robot {
@@ -99,7 +99,7 @@ impl Drive for Robot {
         Robot::measured(self)
     }
 
-    fn step(&mut self, tick: u64, horizon: Horizon, hearing: &Hearing) -> Step {
+    fn step(&mut self, tick: u64, horizon: Horizon, hearing: &NeighbourEstimates) -> Step {
         Robot::step(self, tick, horizon, hearing)
     }
 }
@@ -145,7 +145,7 @@ pub fn run<D: Drive>(launch: Launch<'_>, stop: &StopFlag, build: impl Fn(&Setup,
 /// What a robot begins anew with every episode.
 struct Episode<D> {
     epoch: u64,
-    hearing: Hearing,
+    hearing: NeighbourEstimates,
     drive: D,
 }
 
@@ -154,7 +154,7 @@ impl<D: Drive> Episode<D> {
         let setup = setup.of_episode(epoch)?;
         Ok(Self {
             epoch,
-            hearing: Hearing::new(robot, &setup.scenario, &setup.params.disturbance, setup.team.seed),
+            hearing: NeighbourEstimates::new(robot, &setup.scenario, &setup.params.disturbance, setup.team.seed),
             drive: build(&setup, robot),
         })
     }

@@ -51,8 +51,8 @@ pub fn judge(scenario: &Scenario, params: &Params, summary: &RunSummary) -> Guar
     let when =
         if noise > 0.0 { "at the samples only (positions are measured with noise)" } else { "between samples too" };
     let held = format!(
-        "separation of at least {kept} m, {when}, by hard cell rows and the last check ({} inputs changed)",
-        summary.shielded
+        "separation of at least {kept} m, {when}, by hard cell rows and the safety filter ({} inputs changed)",
+        summary.filtered
     );
     none(if kept < limit {
         format!("{held}; not the full {limit} m, because cell.separation is {kept} m")

@@ -5,7 +5,7 @@ pub mod guarantee;
 pub mod horizons;
 pub mod latency;
 pub mod launch;
-mod own_place;
+mod own_runtime_dir;
 pub mod page;
 pub mod policy;
 pub mod record;

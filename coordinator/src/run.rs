@@ -11,7 +11,7 @@ use crate::roster::PeerLost;
 use crate::team::{Interrupt, ProcessTeam};
 use shared::exchange::Kind;
 use shared::messages::MAX_ROBOTS;
-use shared::place::{Place, PlaceError};
+use shared::runtime_dir::{RuntimeDir, RuntimeDirError};
 use shared::services::ServiceError;
 use shared::stop::StopFlag;
 use shared::team::{Episodes, TeamError};
@@ -92,7 +92,7 @@ pub enum RunError {
     },
     /// The place of its shared files.
     #[error(transparent)]
-    Place(#[from] PlaceError),
+    RuntimeDir(#[from] RuntimeDirError),
     /// A file in its folder.
     #[error(transparent)]
     Team(#[from] TeamError),
@@ -288,7 +288,7 @@ impl Run {
     }
 
     /// Where the run's shared files are.
-    pub fn place(&self) -> &Place {
+    pub fn place(&self) -> &RuntimeDir {
         self.team.place()
     }
 }

@@ -16,7 +16,7 @@ use vodca::step::Step;
 use vodca::way::LowerBound;
 
 /// Version of the format.
-pub const VERSION: u32 = 1;
+pub const VERSION: u32 = 2; // 1 said `shielded` where this says `filtered`
 /// Teams of more robots are not held against a lower bound: crowds, not ways, decide how long they take.
 const BOUNDED: usize = 16;
 

@@ -5,13 +5,13 @@
 
 use crate::clock::{Clock, Overruns};
 use crate::launch::{self, Agents};
-use crate::own_place::OwnPlace;
+use crate::own_runtime_dir::OwnRuntimeDir;
 use crate::roster::{PeerLost, Roster};
 use crate::run::{Options, Outcome, RunError, STALL};
-use shared::exchange::Hub;
+use shared::exchange::CoordinatorPort;
 use shared::messages::{MAX_ROBOTS, Report, Stamps, kind};
 use shared::os;
-use shared::place::{self, Place};
+use shared::runtime_dir::{self, RuntimeDir};
 use shared::services::{self, ServiceError};
 use shared::stop::StopFlag;
 use shared::team::{FIRST_EPOCH, Setup, TeamFile, VERSION};
@@ -99,8 +99,8 @@ pub struct ProcessTeam {
     setup: Setup,
     // Dropped in this order: first the processes, then our ports, last the files.
     roster: Roster,
-    hub: Hub,
-    place: OwnPlace,
+    port: CoordinatorPort,
+    place: OwnRuntimeDir,
     stop: StopFlag,
     clock: Clock,
     epoch: u64,
@@ -123,12 +123,12 @@ impl ProcessTeam {
         stop: &StopFlag,
     ) -> Result<Self, RunError> {
         os::raise_file_limit();
-        place::sweep_leftovers();
+        runtime_dir::sweep_leftovers();
         let robots = scenario.robots.len();
         if !(1..=MAX_ROBOTS).contains(&robots) {
             return Err(RunError::Robots { scenario: scenario.name.clone(), robots });
         }
-        let place = OwnPlace(Place::create()?);
+        let place = OwnRuntimeDir(RuntimeDir::create()?);
         let file = TeamFile {
             version: VERSION,
             robots,
@@ -145,7 +145,7 @@ impl ProcessTeam {
         let path = options.run.join("iceoryx2.toml");
         let text = services::config_text(&place.0)?;
         std::fs::write(&path, text).map_err(|source| RunError::Config { path, source })?;
-        let hub = Hub::create(options.exchange, &place.0, robots, FIRST_EPOCH)?;
+        let port = CoordinatorPort::create(options.exchange, &place.0, robots, FIRST_EPOCH)?;
         // Only now: who finds this file finds the services as well.
         file.write(&options.run)?;
         let names = scenario.robots.iter().map(|robot| robot.name.clone()).collect();
@@ -153,7 +153,7 @@ impl ProcessTeam {
         Ok(Self {
             roster: Roster::new(options.run.clone(), names),
             setup: Setup { team: file, scenario: scenario.clone(), params: params.clone() },
-            hub,
+            port,
             place,
             stop: stop.clone(),
             clock: if options.real_time { Clock::real_time(sample_time) } else { Clock::lock_step() },
@@ -186,7 +186,7 @@ impl ProcessTeam {
         for wanted in [kind::READY, kind::MET] {
             self.roster.expect_all();
             if wanted == kind::MET {
-                self.hub.meet()?;
+                self.port.meet()?;
             }
             self.collect(None, until, |heard, robot, report| {
                 heard.roster.seen(robot, report.pid);
@@ -211,7 +211,7 @@ impl ProcessTeam {
     /// Sends everybody back to its start and waits until all are there.
     pub(crate) fn next_episode(&mut self) -> Result<(), Interrupt> {
         self.roster.expect_all();
-        self.epoch = self.hub.next_episode()?;
+        self.epoch = self.port.next_episode()?;
         let deadline = Instant::now() + self.options.tick_deadline;
         self.collect(None, deadline, |heard, robot, report| {
             if report.kind == kind::MET && heard.roster.answer(robot) {
@@ -232,9 +232,9 @@ impl ProcessTeam {
         let mut looked = start;
         loop {
             let (mut taken, mut lost) = (0, None);
-            let Self { roster, hub, reported: steps, stamps, measured, .. } = self;
+            let Self { roster, port, reported: steps, stamps, measured, .. } = self;
             let mut heard = Heard { roster, steps, stamps, measured, deadline: &mut deadline };
-            hub.collect(|robot, report| {
+            port.collect(|robot, report| {
                 taken += 1;
                 lost = lost.take().or(take(&mut heard, robot, report).err());
             })?;
@@ -259,7 +259,7 @@ impl ProcessTeam {
                 let how = format!("gave no answer for {:.1} s", (now - start).as_secs_f64());
                 return self.roster.first_missing(tick, how).map_or(Ok(()), |lost| Err(Interrupt::Lost(lost)));
             }
-            self.hub.wait(self.roster.missing(), (deadline - now).min(LOOK_AROUND));
+            self.port.wait(self.roster.missing(), (deadline - now).min(LOOK_AROUND));
         }
     }
 
@@ -272,7 +272,7 @@ impl ProcessTeam {
             }
             _ => GRACE,
         };
-        let told = self.hub.stop();
+        let told = self.port.stop();
         self.roster.ask_to_end();
         self.roster.wait_for_end(grace);
         told
@@ -294,7 +294,7 @@ impl ProcessTeam {
     }
 
     /// Where the run's shared files are.
-    pub fn place(&self) -> &Place {
+    pub fn place(&self) -> &RuntimeDir {
         &self.place.0
     }
 
@@ -337,7 +337,7 @@ impl Playable for ProcessTeam {
 
     fn tick(&mut self, tick: u64, horizons: &[Horizon]) -> Result<(), Interrupt> {
         self.roster.expect_all();
-        self.moments.announced = self.hub.announce(tick, horizons)?;
+        self.moments.announced = self.port.announce(tick, horizons)?;
         self.moments.rung = os::now_ns();
         self.moments.late = self.clock.begin(self.moments.announced);
         let deadline = Instant::now() + self.options.tick_deadline;

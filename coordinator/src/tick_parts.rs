@@ -49,7 +49,7 @@ impl TickTimes<'_> {
 /// * read: until it has all plans of tick k - 1;
 /// * detect: conflicts, rows, reference and cell;
 /// * solve: the QP's solvers (both 0 for a controller without a QP);
-/// * check: everything else of the step, the last check above all;
+/// * check: everything else of the step, the safety filter above all;
 /// * publish: packing the report and, in a peer exchange, handing the plan to all others;
 /// * collect: until the coordinator has taken the report.
 pub fn parts(stamps: &Stamps, step: &Step) -> [u64; PARTS.len()] {

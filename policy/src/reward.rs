@@ -146,7 +146,7 @@ mod tests {
             rows: 0,
             level: Level::ClosedForm,
             status: Status::Solved,
-            shielded: false,
+            filtered: false,
             plan: Prediction::from_states(&[position, next_position], Position::zeros()),
             detect_ns: 0,
             solve_ns: 0,

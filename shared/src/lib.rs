@@ -3,8 +3,8 @@
 pub mod exchange;
 pub mod messages;
 pub mod os;
-pub mod place;
 pub mod raw;
+pub mod runtime_dir;
 pub mod services;
 pub mod stop;
 pub mod team;

@@ -136,8 +136,8 @@ pub struct Report {
     pub level: u8,
     /// [`Status`] as its number.
     pub status: u8,
-    /// 1: the last check changed the input.
-    pub shielded: u8,
+    /// 1: the safety filter changed the input.
+    pub filtered: u8,
     /// N_i^k as it was asked for; the plan of a fallback may have another.
     pub horizon: u8,
 }
@@ -281,7 +281,7 @@ impl Report {
             rows: 0,
             level: 0,
             status: 0,
-            shielded: 0,
+            filtered: 0,
             horizon: 0,
         }
     }
@@ -300,7 +300,7 @@ impl Report {
             rows: step.rows,
             level: step.level.number(),
             status: step.status.number(),
-            shielded: u8::from(step.shielded),
+            filtered: u8::from(step.filtered),
             horizon: step.horizon.steps() as u8,
             ..Report::presence(epoch, robot, kind::STEP, step.next_measured)
         }
@@ -319,7 +319,7 @@ impl Report {
             rows: self.rows,
             level: Level::from_number(self.level)?,
             status: Status::from_number(self.status)?,
-            shielded: self.shielded == 1,
+            filtered: self.filtered == 1,
             plan,
             detect_ns: self.detect_ns,
             solve_ns: self.solve_ns,
@@ -344,7 +344,7 @@ mod tests {
             rows: 3,
             level: Level::Clarabel,
             status: Status::Relaxed,
-            shielded: true,
+            filtered: true,
             plan: Prediction::from_states(&states, Position::new(9.0, -9.0)),
             detect_ns: 987,
             solve_ns: 1234,

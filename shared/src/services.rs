@@ -2,12 +2,12 @@
 //! every service, and thin typed ports.
 //!
 //! A run has its own prefix (of shared-memory files) and its own short root folder (of sockets, whose
-//! paths must stay below 108 bytes), see [`crate::place`]; two runs can therefore not meet.
+//! paths must stay below 108 bytes), see [`crate::runtime_dir`]; two runs can therefore not meet.
 //! *Invariant*: the coordinator creates every service before a robot starts; robots only open. A
 //! service whose creator died half-way never heals, only deleting the run's files helps.
 
 use crate::messages::{Announcement, Plan, Report};
-use crate::place::Place;
+use crate::runtime_dir::RuntimeDir;
 use iceoryx2::prelude::*;
 use iceoryx2::service::builder::event::EventOpenError;
 use iceoryx2::service::builder::publish_subscribe::PublishSubscribeOpenError as OpenError;
@@ -24,8 +24,8 @@ mod wake;
 pub use policy::{PolicyAsker, PolicyPort};
 pub use ports::{Announcements, Announcer, Receiver, Reporter, Reports, Sender};
 
-use events::{Bell, Ear};
-use wake::{ReportBell, ReportEar, TickBell, TickEar, WakePage};
+use events::{EventListener, EventNotifier};
+use wake::{ReportListener, ReportNotifier, TickListener, TickNotifier, WakePage};
 
 type Ipc = ipc::Service;
 type Channel<Payload, Header = ()> = publish_subscribe::PortFactory<Ipc, Payload, Header>;
@@ -52,7 +52,7 @@ pub struct ServiceError {
     pub place: String,
 }
 
-fn failed(place: &Place, what: &str, which: &str, reason: impl Debug) -> ServiceError {
+fn failed(place: &RuntimeDir, what: &str, which: &str, reason: impl Debug) -> ServiceError {
     ServiceError {
         what: format!("{what} {which}"),
         reason: format!("iceoryx2 says {reason:?}"),
@@ -68,7 +68,7 @@ pub fn settle_signal_handlers() {
 }
 
 /// The iceoryx2 configuration of a run.
-fn config(place: &Place) -> Result<Config, ServiceError> {
+fn config(place: &RuntimeDir) -> Result<Config, ServiceError> {
     let mut config = Config::default();
     config.global.prefix = FileName::new(place.prefix.as_bytes())
         .map_err(|error| failed(place, "use the prefix", &place.prefix, error))?;
@@ -83,14 +83,14 @@ fn config(place: &Place) -> Result<Config, ServiceError> {
 }
 
 /// The same as text of an `iceoryx2.toml`, with which `iox2` and other bindings can look into the run.
-pub fn config_text(place: &Place) -> Result<String, ServiceError> {
+pub fn config_text(place: &RuntimeDir) -> Result<String, ServiceError> {
     toml::to_string(&config(place)?).map_err(|error| failed(place, "write", "iceoryx2.toml", error))
 }
 
 /// All services of a run, as one process sees them.
 #[derive(Debug)]
 pub struct Services {
-    place: Place,
+    place: RuntimeDir,
     announcements: Channel<[Plan], Announcement>,
     reports: Channel<Report>,
     plans: Option<Channel<Plan>>,
@@ -106,16 +106,16 @@ enum Role {
 
 impl Services {
     /// Makes every service of a run of `robots` robots; `peer`: also the one on which robots hear each other.
-    pub fn create(place: &Place, robots: usize, peer: bool) -> Result<Self, ServiceError> {
+    pub fn create(place: &RuntimeDir, robots: usize, peer: bool) -> Result<Self, ServiceError> {
         Self::new(place, robots, peer, Role::Create)
     }
 
     /// Opens them.
-    pub fn open(place: &Place, robots: usize, peer: bool) -> Result<Self, ServiceError> {
+    pub fn open(place: &RuntimeDir, robots: usize, peer: bool) -> Result<Self, ServiceError> {
         Self::new(place, robots, peer, Role::Open)
     }
 
-    fn new(place: &Place, robots: usize, peer: bool, role: Role) -> Result<Self, ServiceError> {
+    fn new(place: &RuntimeDir, robots: usize, peer: bool, role: Role) -> Result<Self, ServiceError> {
         let maker = Maker::new(place, robots, role)?;
         Ok(Self {
             announcements: maker.announcements("vodca/announcements")?,
@@ -131,33 +131,33 @@ impl Services {
         let publisher = self.announcements.publisher_builder().initial_max_slice_len(frame.max(1)).create();
         Ok(Announcer {
             publisher: publisher.map_err(|error| failed(&self.place, "publish on", "vodca/announcements", error))?,
-            bell: TickBell::new(&self.wake),
+            notifier: TickNotifier::new(&self.wake),
             place: self.place.clone(),
         })
     }
 
-    /// A robot's ear for the coordinator.
+    /// A robot's listener for the coordinator.
     pub fn announcements(&self) -> Result<Announcements, ServiceError> {
         let subscriber = self.announcements.subscriber_builder().create();
         Ok(Announcements {
             subscriber: subscriber
                 .map_err(|error| failed(&self.place, "subscribe to", "vodca/announcements", error))?,
-            ear: TickEar::new(&self.wake),
+            listener: TickListener::new(&self.wake),
             place: self.place.clone(),
         })
     }
 
     /// A robot's voice to the coordinator.
     pub fn reporter(&self) -> Result<Reporter, ServiceError> {
-        Ok(Reporter { sender: Sender::new(&self.reports, &self.place)?, bell: ReportBell::new(&self.wake) })
+        Ok(Reporter { sender: Sender::new(&self.reports, &self.place)?, notifier: ReportNotifier::new(&self.wake) })
     }
 
-    /// The coordinator's ear.
+    /// The coordinator's listener.
     pub fn reports(&self) -> Result<Reports, ServiceError> {
-        Ok(Reports { receiver: Receiver::new(&self.reports, &self.place)?, ear: ReportEar::new(&self.wake) })
+        Ok(Reports { receiver: Receiver::new(&self.reports, &self.place)?, listener: ReportListener::new(&self.wake) })
     }
 
-    /// A robot's voice to the others and its ear for them; `None` in a relayed exchange.
+    /// A robot's voice to the others and its listener for them; `None` in a relayed exchange.
     pub fn plans(&self) -> Result<Option<PlanPorts>, ServiceError> {
         let Some(service) = &self.plans else { return Ok(None) };
         let receiver = Receiver::new(service, &self.place)?;
@@ -168,7 +168,7 @@ impl Services {
 /// Makes or opens services: the one place of all limits. The creator fixes them.
 struct Maker<'a> {
     node: Node<Ipc>,
-    place: &'a Place,
+    place: &'a RuntimeDir,
     role: Role,
     /// Every robot, the coordinator, and head-room.
     everyone: usize,
@@ -177,7 +177,7 @@ struct Maker<'a> {
 }
 
 impl<'a> Maker<'a> {
-    fn new(place: &'a Place, robots: usize, role: Role) -> Result<Self, ServiceError> {
+    fn new(place: &'a RuntimeDir, robots: usize, role: Role) -> Result<Self, ServiceError> {
         // Signals are ours (`stop.rs`).
         let node = NodeBuilder::new()
             .config(&config(place)?)
@@ -230,7 +230,7 @@ impl<'a> Maker<'a> {
         })
     }
 
-    fn bell(&self, name: &str, notifiers: usize, listeners: usize) -> Result<Alarm, ServiceError> {
+    fn notifier(&self, name: &str, notifiers: usize, listeners: usize) -> Result<Alarm, ServiceError> {
         let again =
             |error: &EventOpenError| matches!(error, EventOpenError::DoesNotExist | EventOpenError::HangsInCreation);
         self.make(name, again, |name| {

@@ -3,7 +3,7 @@
 
 use crate::exchange::Kind;
 use crate::messages::MAX_ROBOTS;
-use crate::place::Place;
+use crate::runtime_dir::RuntimeDir;
 use serde::{Deserialize, Serialize};
 use std::io;
 use std::path::{Path, PathBuf};
@@ -45,7 +45,7 @@ pub struct TeamFile {
     /// How long a robot waits between two ticks before it takes the coordinator for dead, s.
     pub silence_limit: f64,
     /// Where the shared files are.
-    pub place: Place,
+    pub place: RuntimeDir,
 }
 
 /// What differs between the episodes of a run, besides their seeds.

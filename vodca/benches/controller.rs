@@ -10,14 +10,14 @@ use std::time::Duration;
 use vodca::Position;
 use vodca::conflict::rows::collision_rows;
 use vodca::controller::{Controller, View};
-use vodca::hearing::Hearing;
 use vodca::horizon::Horizon;
 use vodca::layout::Layout;
+use vodca::neighbour_estimates::NeighbourEstimates;
 use vodca::params::{Params, Profile};
 use vodca::prediction::Prediction;
 use vodca::reference;
 use vodca::safety::cell::{Cell, Present};
-use vodca::safety::last_check::nearest_safe;
+use vodca::safety::filter::nearest_safe;
 use vodca::scenario::{Scenario, set_up};
 use vodca::team::Team;
 use vodca::vodca_controller::{VodcaController, hazards};
@@ -33,7 +33,7 @@ struct Moment {
     layout: Arc<Layout>,
     robot: usize,
     horizon: Horizon,
-    hearing: Hearing,
+    hearing: NeighbourEstimates,
     position: Position,
     previous: Prediction,
 }
@@ -44,7 +44,7 @@ impl Moment {
         let horizon = Horizon::saturating(steps);
         let horizons = vec![horizon; scenario.robots.len()];
         let mut team = Team::new(&scenario, &params, scenario.seed);
-        let mut hearing = Hearing::new(0, &scenario, &params.disturbance, scenario.seed);
+        let mut hearing = NeighbourEstimates::new(0, &scenario, &params.disturbance, scenario.seed);
         for tick in 0..TICK - 1 {
             for (robot, step) in team.step(&horizons).iter().enumerate() {
                 hearing.hear(tick, robot, &step.plan);
@@ -116,7 +116,7 @@ fn safety(criterion: &mut Criterion) {
     let mut cell = Cell::with_capacity(16, stride);
     criterion.bench_function("cell of 13 neighbours", |bencher| bencher.iter(|| moment.cell(black_box(&mut cell))));
     for (name, wanted) in [("that keeps everything", Position::zeros()), ("at full speed", Position::new(0.3, 0.3))] {
-        criterion.bench_function(&format!("last check of a move {name}"), |bencher| {
+        criterion.bench_function(&format!("safety filter of a move {name}"), |bencher| {
             bencher.iter(|| nearest_safe(black_box(wanted), &cell))
         });
     }

@@ -11,7 +11,7 @@ use vodca::Position;
 use vodca::horizon::{Horizon, MAX_HORIZON};
 use vodca::mpc::clarabel::Clarabel;
 use vodca::mpc::closed_form::ClosedForm;
-use vodca::mpc::problem::{Plan, Problem, QpSolver};
+use vodca::mpc::problem::{Problem, QpSolver, Solution};
 use vodca::mpc::sample::{Family, Sample};
 use vodca::mpc::structured::Structured;
 
@@ -36,7 +36,7 @@ fn measure(criterion: &mut Criterion, name: &str, samples: &[Sample], mut solve:
 
 fn solvers(criterion: &mut Criterion) {
     let mut states = [Position::zeros(); MAX_HORIZON];
-    let mut plan = Plan::default();
+    let mut plan = Solution::default();
     let mut closed_form = ClosedForm::new(0.2, 5.0, 10.0);
     let mut structured = Structured::default();
     let mut clarabel = Clarabel::unpolished(1e-9);
@@ -64,7 +64,7 @@ fn solvers(criterion: &mut Criterion) {
 /// What it costs that the horizon changes at every tick: uniform over 1..=49 beside their mean.
 fn horizons(criterion: &mut Criterion) {
     let mut states = [Position::zeros(); MAX_HORIZON];
-    let mut plan = Plan::default();
+    let mut plan = Solution::default();
     let mut closed_form = ClosedForm::new(0.2, 5.0, 10.0);
     let mut structured = Structured::default();
     for (name, changing) in [("fixed 25", false), ("changing 1..=49", true)] {

@@ -55,8 +55,8 @@ pub struct Decision {
     pub level: Level,
     /// How the plan came about.
     pub status: Status,
-    /// Whether the last check changed the input.
-    pub shielded: bool,
+    /// Whether the safety filter changed the input.
+    pub filtered: bool,
     /// Time before the QP's solvers, ns; 0 for a controller without a QP.
     pub detect_ns: u64,
     /// Time in the QP's solvers, ns; 0 for a controller without a QP.

@@ -29,7 +29,7 @@
 //! *Cells.* With `d = |p_i - p_j|` and `n = (p_i - p_j) / d` of the positions that everybody broadcast, both robots of a
 //! pair owe half of what `d` has above `r_s`. Standing still always satisfies that; the two rows add up to a separation of
 //! at least `r_s` at the end of the tick and, moves being straight, throughout it. After any outcome of any solver
-//! [`safety::last_check`] replaces a first move that would leave the cell.
+//! [`safety::filter`] replaces a first move that would leave the cell.
 //!
 //! # A tick
 //!
@@ -73,12 +73,12 @@ pub mod conflict;
 pub mod controller;
 pub mod explain;
 pub mod geometry;
-pub mod hearing;
 pub mod horizon;
 pub mod horizon_source;
 pub mod layout;
 pub mod metrics;
 pub mod mpc;
+pub mod neighbour_estimates;
 pub mod params;
 pub mod play;
 pub mod prediction;

@@ -4,10 +4,10 @@ use crate::Position;
 use crate::baseline::orca::OrcaController;
 use crate::body::{Body, SimulatedBody};
 use crate::controller::{Controller, View};
-use crate::hearing::Hearing;
 use crate::horizon::Horizon;
 use crate::layout::Layout;
 use crate::mpc::cross_check::Comparison;
+use crate::neighbour_estimates::NeighbourEstimates;
 use crate::params::{ControllerKind, Params};
 use crate::scenario::Scenario;
 use crate::step::Step;
@@ -63,7 +63,7 @@ impl Robot {
     }
 
     /// Decides, moves and measures itself anew: one tick. `hearing` holds the others' plans of tick k - 1.
-    pub fn step(&mut self, tick: u64, horizon: Horizon, hearing: &Hearing) -> Step {
+    pub fn step(&mut self, tick: u64, horizon: Horizon, hearing: &NeighbourEstimates) -> Step {
         let started = Instant::now();
         let measured = self.measured;
         let position = self.body.truth().unwrap_or(measured);
@@ -82,7 +82,7 @@ impl Robot {
             rows: decision.rows,
             level: decision.level,
             status: decision.status,
-            shielded: decision.shielded,
+            filtered: decision.filtered,
             plan: decision.plan,
             detect_ns: decision.detect_ns,
             solve_ns: decision.solve_ns,
@@ -108,7 +108,7 @@ mod tests {
         for (profile, has_qp) in [(Profile::Safe, true), (Profile::Orca, false)] {
             let (scenario, params) = set_up(Some("two_setpoint"), None, profile, &[]).unwrap();
             let layout = Arc::new(Layout::of(&scenario, params.model.min_separation));
-            let hearing = Hearing::new(0, &scenario, &params.disturbance, 0);
+            let hearing = NeighbourEstimates::new(0, &scenario, &params.disturbance, 0);
             let step = Robot::new(0, &scenario, &params, &layout, 0).step(0, Horizon::MAX, &hearing);
             assert_eq!((step.detect_ns > 0, step.solve_ns > 0), (has_qp, has_qp), "{profile}");
             let parts = step.detect_ns + step.solve_ns;
@@ -149,7 +149,7 @@ mod tests {
         let layout = Arc::new(Layout::of(&scenario, params.model.min_separation));
         let controller = Box::new(VodcaController::new(0, &params, &layout));
         let mut robot = Robot::of(Box::new(Real(scenario.robots[0].start)), controller);
-        let step = robot.step(0, Horizon::MAX, &Hearing::new(0, &scenario, &params.disturbance, 0));
+        let step = robot.step(0, Horizon::MAX, &NeighbourEstimates::new(0, &scenario, &params.disturbance, 0));
         assert_eq!((step.position, step.next_position), (step.measured, step.next_measured));
         assert_eq!(robot.measured(), step.next_measured);
     }

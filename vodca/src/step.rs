@@ -124,8 +124,8 @@ pub struct Step {
     pub level: Level,
     /// How the plan came about.
     pub status: Status,
-    /// Whether the last check changed the input (ARCHITECTURE, rule 6).
-    pub shielded: bool,
+    /// Whether the safety filter changed the input (ARCHITECTURE, rule 6).
+    pub filtered: bool,
     /// The plan published at this tick.
     pub plan: Prediction,
     /// Time before the QP's solvers (conflicts, rows, reference, cell), ns; 0 for a controller without a

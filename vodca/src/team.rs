@@ -2,10 +2,10 @@
 //! processes. Golden tests, sweeps and replays stand on it; agent processes give the same bytes.
 
 use crate::Position;
-use crate::hearing::Hearing;
 use crate::horizon::Horizon;
 use crate::layout::Layout;
 use crate::mpc::cross_check::Comparison;
+use crate::neighbour_estimates::NeighbourEstimates;
 use crate::params::{Disturbance, Params};
 use crate::play::Playable;
 use crate::robot::Robot;
@@ -18,7 +18,7 @@ use std::sync::Arc;
 pub struct Team {
     robots: Vec<Robot>,
     /// One for all, or one each where messages get lost between some and not others.
-    hearing: Vec<Hearing>,
+    hearing: Vec<NeighbourEstimates>,
     steps: Vec<Step>,
     measured: Vec<Position>,
     tick: u64,
@@ -52,7 +52,9 @@ impl Team {
         let Disturbance { plan_loss, position_loss, .. } = params.disturbance;
         let listeners = if plan_loss + position_loss > 0.0 { robots.len() } else { 1 };
         Self {
-            hearing: (0..listeners).map(|robot| Hearing::new(robot, scenario, &params.disturbance, seed)).collect(),
+            hearing: (0..listeners)
+                .map(|robot| NeighbourEstimates::new(robot, scenario, &params.disturbance, seed))
+                .collect(),
             steps: Vec::with_capacity(robots.len()),
             measured: robots.iter().map(Robot::measured).collect(),
             robots,

@@ -3,19 +3,19 @@
 use crate::conflict::back_off;
 use crate::conflict::memory::ConflictMemory;
 use crate::conflict::rows::collision_rows;
-use crate::conflict::traffic::{Traffic, Walk};
-use crate::conflict::{Course, Hazard};
+use crate::conflict::traffic::{StraightMotion, Traffic};
+use crate::conflict::{Hazard, PredictedMotion};
 use crate::controller::{Controller, Decision, Neighbour, View};
 use crate::horizon::Horizon;
 use crate::layout::Layout;
 use crate::mpc::cross_check::Comparison;
 use crate::mpc::ladder::Ladder;
-use crate::mpc::problem::{Plan, Problem, Row, SlackPrice, SolveError, Target};
+use crate::mpc::problem::{Problem, Row, SlackPrice, Solution, SolveError, Target};
 use crate::params::{Infeasible, Params, Reference};
 use crate::prediction::Prediction;
 use crate::reference;
 use crate::safety::cell::{Cell, Present};
-use crate::safety::last_check::{TOLERANCE, is_answer, nearest_safe};
+use crate::safety::filter::{TOLERANCE, is_answer, nearest_safe};
 use crate::step::{Level, Status};
 use crate::way::Standing;
 use crate::way::right_of_way::{Regard, regard_others, way_on};
@@ -33,7 +33,7 @@ pub struct VodcaController {
     target: Target,
     rows: Vec<Row>,
     cell: Cell,
-    plan: Plan,
+    plan: Solution,
     previous: Option<Previous>,
     memory: ConflictMemory,
     traffic: Traffic,
@@ -50,7 +50,7 @@ pub struct VodcaController {
 /// The robot's own plan of tick k - 1.
 struct Previous {
     prediction: Prediction,
-    plan: Plan,
+    plan: Solution,
 }
 
 impl VodcaController {
@@ -67,7 +67,7 @@ impl VodcaController {
             target: reference::empty_target(),
             rows: Vec::with_capacity(2 * hazards),
             cell: Cell::with_capacity(hazards, stride),
-            plan: Plan::default(),
+            plan: Solution::default(),
             previous: None,
             memory: ConflictMemory::default(),
             traffic: Traffic::with_capacity(robots, &params.aim, stride),
@@ -99,7 +99,7 @@ impl VodcaController {
     fn look_ahead(&mut self, view: &View<'_>) -> f64 {
         let Self { params, layout, traffic, robot, .. } = self;
         let Params { model, aim, .. } = &*params;
-        let own = Walk { from: view.position, to: self.on };
+        let own = StraightMotion { from: view.position, to: self.on };
         if aim.look_ahead == 0 || (own.to - own.from).norm() < aim.fade_start {
             return 0.0;
         }
@@ -107,7 +107,7 @@ impl VodcaController {
         for (other, neighbour) in view.neighbours.iter().enumerate().filter(|(other, _)| *other != *robot) {
             if let Some((_, from)) = neighbour.present {
                 let separation = layout.owed(model.min_separation, *robot, other);
-                traffic.add(Walk { from, to: neighbour.toward }, separation);
+                traffic.add(StraightMotion { from, to: neighbour.toward }, separation);
             }
         }
         traffic.turn(own)
@@ -171,7 +171,7 @@ impl VodcaController {
         match self.run_ladder(view) {
             Ok(level) => return (level, Status::Solved),
             Err(SolveError::Infeasible) if self.params.vodca.infeasible == Infeasible::Hold => {
-                self.plan = Plan::default();
+                self.plan = Solution::default();
                 return (Level::Fallback, Status::Held);
             }
             Err(SolveError::Infeasible) => {
@@ -203,7 +203,7 @@ impl VodcaController {
 
     /// No solver finished: the previous plan one step later, or standing still.
     fn fall_back(&mut self, horizon: Horizon) -> Status {
-        self.plan = Plan::default();
+        self.plan = Solution::default();
         let Some(previous) = &self.previous else { return Status::Stopped };
         let still_planned = previous.plan.inputs.iter().skip(1).take(horizon.steps());
         for (to, from) in self.plan.inputs.iter_mut().zip(still_planned) {
@@ -220,18 +220,18 @@ impl VodcaController {
         for input in inputs.iter_mut() {
             *input = input.map(|axis| bounded(axis, model.max_speed));
         }
-        let mut shielded = false;
+        let mut filtered = false;
         if self.params.cell.enabled {
             let (step, changed) = nearest_safe(inputs[0] * model.sample_time, &self.cell);
             if changed {
                 inputs[0] = (step / model.sample_time).map(|axis| bounded(axis, model.max_speed));
-                shielded = true;
+                filtered = true;
             }
             debug_assert!(is_answer(inputs[0] * model.sample_time, &self.cell, 2.0 * TOLERANCE));
         }
         let set_point = self.layout.set_points[self.robot];
         let plan = Prediction::roll_out(view.position, set_point, model.sample_time, inputs);
-        (plan.looking(self.on), shielded)
+        (plan.looking(self.on), filtered)
     }
 }
 
@@ -256,10 +256,10 @@ impl Controller for VodcaController {
         let detect_ns = (solving - started).as_nanos() as u64;
         let (level, status) = self.solve(view, rows);
         let solve_ns = solving.elapsed().as_nanos() as u64;
-        let (prediction, shielded) = self.publish(view);
+        let (prediction, filtered) = self.publish(view);
         let input: Input = self.plan.inputs[0];
         self.previous = Some(Previous { prediction: prediction.clone(), plan: self.plan.clone() });
-        Decision { input, plan: prediction, rows: rows as u32, level, status, shielded, detect_ns, solve_ns }
+        Decision { input, plan: prediction, rows: rows as u32, level, status, filtered, detect_ns, solve_ns }
     }
 
     fn comparison(&self) -> Option<Comparison> {
@@ -292,10 +292,10 @@ pub fn hazards<'a>(
         }
         let (tick, plan) = neighbour.plan.as_ref()?;
         let age = (view.tick - 1).saturating_sub(*tick) as usize;
-        Some(Hazard { course: Course::Plan { plan, age }, separation })
+        Some(Hazard { course: PredictedMotion::Plan { plan, age }, separation })
     });
     let obstacles = layout.obstacles.iter().map(move |obstacle| Hazard {
-        course: Course::Still(obstacle.centre),
+        course: PredictedMotion::Still(obstacle.centre),
         separation: layout.owed_to_obstacle(usual, robot, obstacle),
     });
     neighbours.chain(obstacles)
@@ -304,7 +304,11 @@ pub fn hazards<'a>(
 /// Rule 3: a robot near its set-point, or without patience, lets those pass that still have farther to go
 /// than its own `way` (m), by keeping away from where they wish to walk. (A plan that already avoids a
 /// parked robot shows no conflict.)
-fn wish<'a>(params: &Params, neighbour: &Neighbour) -> Option<Course<'a>> {
+fn wish<'a>(params: &Params, neighbour: &Neighbour) -> Option<PredictedMotion<'a>> {
     let (_, from) = neighbour.present?;
-    Some(Course::Wish { from, to: neighbour.toward, stride: params.model.sample_time * params.model.max_speed })
+    Some(PredictedMotion::Wish {
+        from,
+        to: neighbour.toward,
+        stride: params.model.sample_time * params.model.max_speed,
+    })
 }

@@ -5,7 +5,7 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 use vodca::horizon::Horizon;
 use vodca::mpc::ladder::Ladder;
-use vodca::mpc::problem::{Plan, SolveError};
+use vodca::mpc::problem::{Solution, SolveError};
 use vodca::mpc::sample::{Family, Sample};
 use vodca::params::Profile;
 use vodca::scenario::set_up;
@@ -55,7 +55,7 @@ static ALLOCATOR: Counting = Counting;
 
 /// Solves and returns the level with the number of allocations.
 fn counted(ladder: &mut Ladder, sample: &Sample) -> (Result<Level, SolveError>, u64) {
-    let mut plan = Plan::default();
+    let mut plan = Solution::default();
     let before = ALLOCATIONS.get();
     let outcome = ladder.solve(&sample.problem(), &mut plan);
     (outcome, ALLOCATIONS.get() - before)

@@ -4,7 +4,7 @@ use vodca::Position;
 use vodca::horizon::{Horizon, MAX_HORIZON};
 use vodca::mpc::clarabel::Clarabel;
 use vodca::mpc::closed_form::ClosedForm;
-use vodca::mpc::problem::{Plan, Problem, QpSolver, SolveError, Target};
+use vodca::mpc::problem::{Problem, QpSolver, Solution, SolveError, Target};
 use vodca::mpc::sample::{Family, Sample};
 use vodca::mpc::structured::Structured;
 
@@ -23,9 +23,9 @@ struct Tally {
 
 impl Tally {
     /// Solves with both and compares plan or verdict.
-    fn compare(&mut self, mine: &mut Structured, problem: &Problem<'_>, start: &Plan, name: &str) {
+    fn compare(&mut self, mine: &mut Structured, problem: &Problem<'_>, start: &Solution, name: &str) {
         let mut plan = start.clone();
-        let mut reference = Plan::default();
+        let mut reference = Solution::default();
         let theirs = Clarabel::reference().solve(problem, &mut reference);
         match (mine.solve(problem, &mut plan), theirs) {
             (Err(SolveError::GaveUp { .. }), Ok(_) | Err(SolveError::Infeasible)) => self.given_up += 1,
@@ -58,7 +58,7 @@ fn family_agrees(family: Family) -> Tally {
             for index in 0..SAMPLES {
                 let horizon = Horizon::saturating(n as i64);
                 let sample = Sample::new(family, horizon, rows, n * 100 + rows as u64, index);
-                let mut start = Plan::default();
+                let mut start = Solution::default();
                 closed_form.solve(&sample.problem(), &mut start, &mut [Position::zeros(); MAX_HORIZON]);
                 let name = format!("{family:?}, N = {n}, {rows} rows, sample {index}");
                 tally.compare(&mut solver, &sample.problem(), &start, &name);
@@ -103,7 +103,8 @@ fn without_rows_the_closed_form_is_the_plan_of_both() {
             for index in 0..60 {
                 let sample = Sample::new(family, Horizon::new(n).unwrap(), 0, n, index);
                 let problem = sample.problem();
-                let (mut closed, mut mine, mut reference) = (Plan::default(), Plan::default(), Plan::default());
+                let (mut closed, mut mine, mut reference) =
+                    (Solution::default(), Solution::default(), Solution::default());
                 let mut states = [Position::zeros(); MAX_HORIZON];
                 assert!(ClosedForm::new(0.2, 5.0, 10.0).solve(&problem, &mut closed, &mut states));
                 Structured::default().solve(&problem, &mut mine).unwrap();
@@ -135,7 +136,7 @@ fn other_weights_bounds_and_targets_get_the_same_plan() {
                 let problem =
                     Problem { state_weight, input_weight, sample_time, max_speed, target: &target, ..sample.problem() };
                 let name = format!("weights {state_weight} {input_weight}, N = {n}, sample {index}");
-                tally.compare(&mut solver, &problem, &Plan::default(), &name);
+                tally.compare(&mut solver, &problem, &Solution::default(), &name);
             }
         }
     }

@@ -3,18 +3,18 @@
 use proptest::prelude::*;
 use vodca::horizon::Horizon;
 use vodca::mpc::ladder::Ladder;
-use vodca::mpc::problem::{Plan, Problem, QpSolver, Row, SolveError, Target};
+use vodca::mpc::problem::{Problem, QpSolver, Row, Solution, SolveError, Target};
 use vodca::mpc::sample::{Family, Sample};
 use vodca::mpc::structured::Structured;
 use vodca::{Input, Position};
 
-fn solve(problem: &Problem<'_>) -> Result<Plan, SolveError> {
-    let mut plan = Plan::default();
+fn solve(problem: &Problem<'_>) -> Result<Solution, SolveError> {
+    let mut plan = Solution::default();
     Ladder::default().solve(problem, &mut plan).map(|_| plan)
 }
 
 /// Both plans within `tolerance` m/s, or the same error.
-fn same(a: &Result<Plan, SolveError>, b: &Result<Plan, SolveError>, tolerance: f64) -> bool {
+fn same(a: &Result<Solution, SolveError>, b: &Result<Solution, SolveError>, tolerance: f64) -> bool {
     match (a, b) {
         (Ok(a), Ok(b)) => a.largest_difference(b) <= tolerance,
         (a, b) => a.as_ref().err() == b.as_ref().err(),
@@ -62,7 +62,7 @@ proptest! {
         for turn in [|d: Position| Position::new(-d.x, d.y), |d: Position| Position::new(d.y, d.x)] {
             let (target, rows, position) = moved(&problem, turn, turn);
             let image = Problem { target: &target, rows: &rows, position, ..problem };
-            let expected = solve(&problem).map(|plan| Plan { inputs: plan.inputs.map(turn) });
+            let expected = solve(&problem).map(|plan| Solution { inputs: plan.inputs.map(turn) });
             prop_assert!(same(&expected, &solve(&image), 1e-8));
         }
     }
@@ -100,7 +100,7 @@ proptest! {
         let hard = Sample::new(Family::Hard, Horizon::new(n).unwrap(), m, seed, 0);
         let problem = hard.problem();
         let mut solver = Structured::default();
-        let mut plan = Plan::default();
+        let mut plan = Solution::default();
         // Exact as long as no multiplier exceeds the price.
         if solver.solve(&problem, &mut plan).is_ok() && solver.multipliers().iter().all(|&m| m < 1e5) {
             let soft: Vec<Row> = problem.rows.iter().map(|row| Row { hard: false, ..*row }).collect();
@@ -148,7 +148,7 @@ fn at_its_set_point_a_robot_stands_still() {
     let mut target = problem.target.clone();
     target.states.fill(problem.position);
     let plan = solve(&Problem { target: &target, ..problem }).unwrap();
-    assert_eq!(plan.inputs, Plan::default().inputs);
+    assert_eq!(plan.inputs, Solution::default().inputs);
 }
 
 #[test]

@@ -12,7 +12,7 @@ use evaluation::compare::{
 };
 use evaluation::page;
 use evaluation::range::Numbers;
-use shared::place;
+use shared::runtime_dir;
 use shared::stop::StopFlag;
 use std::path::PathBuf;
 use vodca::metrics::RunSummary;
@@ -76,7 +76,7 @@ pub struct Args {
 }
 
 /// Where the results go.
-enum Place {
+enum RuntimeDir {
     /// Everything.
     Folder(RunFolder),
     /// The runs alone.
@@ -100,10 +100,10 @@ pub fn run(args: Args) -> Ending {
     };
     let jobs = experiment.jobs().map_err(Failure::usage)?;
     let stop = StopFlag::install().map_err(Failure::broken)?;
-    place::sweep_leftovers(); // of comparisons with policies that were killed
+    runtime_dir::sweep_leftovers(); // of comparisons with policies that were killed
     let place = match &args.csv {
-        Some(file) => Place::Csv(new_file(Some(file), "compare", "csv").map_err(Failure::usage)?),
-        None => Place::Folder(RunFolder::named(args.out.as_deref(), "compare").map_err(Failure::usage)?),
+        Some(file) => RuntimeDir::Csv(new_file(Some(file), "compare", "csv").map_err(Failure::usage)?),
+        None => RuntimeDir::Folder(RunFolder::named(args.out.as_deref(), "compare").map_err(Failure::usage)?),
     };
     let progress = Progress::of_work(jobs.len());
     let results = run_all(&jobs, &stop, || progress.advance());
@@ -118,13 +118,13 @@ pub fn run(args: Args) -> Ending {
         stdout::line(line)?;
     }
     stdout::line(match &place {
-        Place::Folder(folder) => format!(
+        RuntimeDir::Folder(folder) => format!(
             "{} runs, each a line of {}; charts: {}",
             runs.len(),
             folder.file(RUNS).display(),
             folder.file(PAGE).display()
         ),
-        Place::Csv(file) => format!("{} runs, each a line of {}", runs.len(), file.display()),
+        RuntimeDir::Csv(file) => format!("{} runs, each a line of {}", runs.len(), file.display()),
     })?;
     if undone > 0 {
         let why = if results.failure.is_some() { "a policy failed" } else { "asked to stop" };
@@ -147,7 +147,7 @@ pub fn run(args: Args) -> Ending {
 const RUNS: &str = "runs.csv";
 
 fn write(
-    place: &Place,
+    place: &RuntimeDir,
     experiment: &Experiment,
     comparison: &Comparison,
     runs: &[Run],
@@ -155,8 +155,8 @@ fn write(
 ) -> Result<(), RecordError> {
     let lines = by_run(experiment, runs).csv();
     let folder = match place {
-        Place::Csv(file) => return write_new(file, lines.as_bytes()),
-        Place::Folder(folder) => folder,
+        RuntimeDir::Csv(file) => return write_new(file, lines.as_bytes()),
+        RuntimeDir::Folder(folder) => folder,
     };
     folder.write(RUNS, lines.as_bytes())?;
     if !tried.is_empty() {

@@ -10,7 +10,7 @@ use coordinator::record::folder::write_new;
 use evaluation::compare::{ControllerSpec, Entry, Experiment, HorizonPart, Run, Sample, expand, run_all};
 use evaluation::search::{POPULATION, constants};
 use evaluation::text_table::TextTable;
-use shared::place;
+use shared::runtime_dir;
 use shared::stop::StopFlag;
 use std::path::PathBuf;
 use vodca::horizon::{Horizon, MAX_HORIZON};
@@ -83,7 +83,7 @@ impl Row {
 pub fn run(args: Args) -> Ending {
     let stop = StopFlag::install().map_err(Failure::broken)?;
     let entries = expand(&args.scenario).map_err(Failure::usage)?;
-    place::sweep_leftovers(); // of evaluations that were killed
+    runtime_dir::sweep_leftovers(); // of evaluations that were killed
     let constants = match args.generations {
         0 => None,
         _ => best_constants(&args, &entries, &stop)?,

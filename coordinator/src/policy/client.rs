@@ -5,12 +5,12 @@
 
 use super::found::FoundPolicy;
 use super::server::{ServerError, ServerProcess, server_program};
-use crate::own_place::OwnPlace;
+use crate::own_runtime_dir::OwnRuntimeDir;
 use policy::settings::{PolicySettings, SettingsError};
 use shared::exchange::Kind;
 use shared::messages::{MAX_ROBOTS, Observation, PolicyAnswer, answer};
 use shared::os;
-use shared::place::{Place, PlaceError};
+use shared::runtime_dir::{RuntimeDir, RuntimeDirError};
 use shared::services::{PolicyAsker, ServiceError};
 use shared::stop::StopFlag;
 use shared::team::{Episodes, FIRST_EPOCH, PARAMS_FILE, SCENARIO_FILE, TeamError, TeamFile, VERSION};
@@ -36,7 +36,7 @@ const POLL_MS: u64 = 10_000;
 pub enum ClientError {
     /// The place of the exchange.
     #[error(transparent)]
-    Place(#[from] PlaceError),
+    RuntimeDir(#[from] RuntimeDirError),
     /// The exchange.
     #[error(transparent)]
     Exchange(#[from] ServiceError),
@@ -105,7 +105,7 @@ pub struct PolicyClient {
     // Dropped in this order: the process, the ports, the files.
     process: ServerProcess,
     asker: PolicyAsker,
-    place: OwnPlace,
+    place: OwnRuntimeDir,
     policy: FoundPolicy,
     sha256: Option<[u8; 32]>,
     stop: StopFlag,
@@ -128,7 +128,7 @@ impl PolicyClient {
         let robots = scenario.robots.len();
         let program = server_program()?;
         os::raise_file_limit();
-        let place = OwnPlace(Place::create()?);
+        let place = OwnRuntimeDir(RuntimeDir::create()?);
         let run = Path::new(&place.0.root).join("run");
         tell(&run, policy, scenario, params, &place.0)?;
         let asker = PolicyAsker::create(&place.0)?;
@@ -234,7 +234,7 @@ impl PolicyClient {
     }
 
     /// Where its shared files are.
-    pub fn place(&self) -> &Place {
+    pub fn place(&self) -> &RuntimeDir {
         &self.place.0
     }
 }
@@ -273,7 +273,7 @@ fn tell(
     policy: &FoundPolicy,
     scenario: &Scenario,
     params: &Params,
-    place: &Place,
+    place: &RuntimeDir,
 ) -> Result<(), ClientError> {
     let write = |name: &str, text: &str| {
         let path = run.join(name);

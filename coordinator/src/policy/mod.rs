@@ -20,7 +20,7 @@ use policy::encoding::hex;
 use policy::settings::{PolicySettings, SettingsError};
 use shared::messages::{MAX_ROBOTS, Observation, PolicyAnswer, answer};
 use shared::os;
-use shared::place::Place;
+use shared::runtime_dir::RuntimeDir;
 use shared::services::{PolicyAsker, ServiceError};
 use shared::stop::StopFlag;
 use shared::team::FIRST_EPOCH;
@@ -136,7 +136,7 @@ pub struct PolicySource {
 
 impl PolicySource {
     /// Makes the services, writes `policy.toml` and starts the server. `team.toml` must be there.
-    pub fn start(options: PolicyOptions, place: &Place, run: &Path, robots: usize) -> Result<Self, PolicyError> {
+    pub fn start(options: PolicyOptions, place: &RuntimeDir, run: &Path, robots: usize) -> Result<Self, PolicyError> {
         let asker = PolicyAsker::create(place)?;
         options.settings.write(run)?;
         Ok(Self {

@@ -1,11 +1,11 @@
 //! `run.mcap`: the run as a film for Foxglove, Lichtblick and Rerun. The only file that imports `mcap`.
 //!
-//! Its messages are those of `film.rs`. Log time is `tick * sample_time` from 0 and nothing measured goes in, so two equal runs give equal bytes.
+//! Its messages are those of `scene_messages.rs`. Log time is `tick * sample_time` from 0 and nothing measured goes in, so two equal runs give equal bytes.
 //! Chunks are written whole every 25 ticks (5 s): a log cut at any byte reads in stream order
 //! up to its last whole chunk.
 
 use super::folder::RecordError;
-use super::{film, scene};
+use super::{scene, scene_messages};
 use mcap::records::MessageHeader;
 use mcap::{Compression, McapError, WriteOptions, Writer};
 use std::collections::BTreeMap;
@@ -25,7 +25,7 @@ const TICKS_PER_CHUNK: u64 = 25;
 pub struct LogWriter {
     path: PathBuf,
     writer: Writer<File>,
-    /// In the order of [`film::channels`].
+    /// In the order of [`scene_messages::channels`].
     channels: Vec<u16>,
     sample_time: f64,
 }
@@ -51,18 +51,20 @@ impl LogWriter {
             .library(concat!("vodca ", env!("CARGO_PKG_VERSION")))
             .create(file)?;
         let mut channels = Vec::new();
-        for film::Channel { topic, schema, schema_encoding, description, encoding } in film::channels() {
+        for scene_messages::Channel { topic, schema, schema_encoding, description, encoding } in
+            scene_messages::channels()
+        {
             let schema = writer.add_schema(schema, schema_encoding, &description)?;
             channels.push(writer.add_channel(schema, topic, encoding, &BTreeMap::new())?);
         }
         let mut log = Self { path, writer, channels, sample_time: params.model.sample_time };
-        log.put(film::LAYOUT, 0, &film::layout(scenario, params))?;
+        log.put(scene_messages::LAYOUT, 0, &scene_messages::layout(scenario, params))?;
         Ok(log)
     }
 
     /// Appends one tick.
     pub fn tick(&mut self, scenario: &Scenario, params: &Params, tick: u64, steps: &[Step]) -> Result<(), RecordError> {
-        let mut messages = film::tick(scenario, params, tick, steps).into_iter();
+        let mut messages = scene_messages::tick(scenario, params, tick, steps).into_iter();
         messages
             .try_for_each(|(channel, data)| self.put(channel, tick, &data))
             .and_then(|()| if (tick + 1).is_multiple_of(TICKS_PER_CHUNK) { self.writer.flush() } else { Ok(()) })
@@ -78,7 +80,7 @@ impl LogWriter {
     }
 
     fn put(&mut self, channel: usize, tick: u64, data: &[u8]) -> Result<(), McapError> {
-        let log_time = film::nanoseconds(self.sample_time, tick);
+        let log_time = scene_messages::nanoseconds(self.sample_time, tick);
         let header = MessageHeader {
             channel_id: self.channels[channel],
             sequence: tick as u32,

@@ -12,7 +12,6 @@
 //! A run that is cut leaves everything up to its last tick and no `summary.json`.
 
 pub mod about;
-pub(crate) mod film;
 pub mod folder;
 mod foxglove;
 pub mod horizons;
@@ -21,6 +20,7 @@ pub mod mcap;
 #[doc(hidden)]
 pub mod samples;
 mod scene;
+pub(crate) mod scene_messages;
 pub mod trajectory;
 
 pub use about::About;

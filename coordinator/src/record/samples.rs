@@ -41,7 +41,7 @@ pub fn steps(robots: usize, tick: u64) -> Vec<Step> {
             rows: 0,
             level: Level::ClosedForm,
             status: Status::Solved,
-            shielded: false,
+            filtered: false,
             plan: Prediction::roll_out(position, start + Position::new(5.0, 0.5), 0.2, &[input; 3]),
             detect_ns: 300,
             solve_ns: 400,

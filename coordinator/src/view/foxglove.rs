@@ -1,13 +1,13 @@
 //! The team in Foxglove or Lichtblick: a WebSocket on the loopback interface that speaks Foxglove's documented
 //! protocol, version 1 (`foxglove.websocket.v1`). The only file that imports `tungstenite`.
 //!
-//! A viewer is told the channels of `record/film.rs`, subscribes to some, and gets the newest tick at its own
+//! A viewer is told the channels of `record/scene_messages.rs`, subscribes to some, and gets the newest tick at its own
 //! pace. Any program on this machine may connect, a page in its browser too.
 
 use super::ViewError;
 use super::frame::{News, Slot};
 use super::viewers::Viewers;
-use crate::record::film;
+use crate::record::scene_messages;
 use policy::encoding::base64;
 use serde_json::{Value, json};
 use std::io::ErrorKind;
@@ -125,7 +125,7 @@ impl Viewer {
             "op": "serverInfo", "name": concat!("vodca ", env!("CARGO_PKG_VERSION")), "capabilities": [],
             "sessionId": std::process::id().to_string(),
         }))?;
-        let channels: Vec<Value> = film::channels()
+        let channels: Vec<Value> = scene_messages::channels()
             .iter()
             .enumerate()
             .map(|(id, channel)| {
@@ -149,16 +149,16 @@ impl Viewer {
         let mut seen = 0;
         loop {
             for new in self.hear()? {
-                if new.1 == film::LAYOUT {
-                    self.send(new.0, 0, &film::layout(&shown.scenario, &shown.params))?;
+                if new.1 == scene_messages::LAYOUT {
+                    self.send(new.0, 0, &scene_messages::layout(&shown.scenario, &shown.params))?;
                 }
             }
             match shown.slot.wait(seen, PAUSE) {
                 News::Frame(frame, number) => {
                     seen = number;
-                    let time = film::nanoseconds(sample_time, frame.tick);
+                    let time = scene_messages::nanoseconds(sample_time, frame.tick);
                     for (channel, data) in
-                        film::tick(&shown.scenario, &shown.params, frame.tick, frame.explainer.steps())
+                        scene_messages::tick(&shown.scenario, &shown.params, frame.tick, frame.explainer.steps())
                     {
                         for (id, _) in self.subscriptions.clone().into_iter().filter(|(_, wanted)| *wanted == channel) {
                             self.send(id, time, &data)?;
@@ -196,7 +196,7 @@ impl Viewer {
         let list = |name: &str| order[name].as_array().cloned().unwrap_or_default();
         let wanted = list("subscriptions").into_iter().filter_map(|wanted| {
             let channel = number(&wanted["channelId"])? as usize;
-            Some((number(&wanted["id"])?, channel)).filter(|_| channel < film::channels().len())
+            Some((number(&wanted["id"])?, channel)).filter(|_| channel < scene_messages::channels().len())
         });
         let before = self.subscriptions.len();
         match order["op"].as_str() {
@@ -298,9 +298,9 @@ mod tests {
         // The layout comes once per subscriber, at any time; nothing subscribed to `/poses`.
         // Orders are carried out one after the other: when the second is answered, the first was.
         subscribe(&mut client, 41, 3);
-        subscribe(&mut client, 40, film::LAYOUT);
+        subscribe(&mut client, 40, scene_messages::LAYOUT);
         let (scenario, params) = (samples::scenario(2), Params::safe());
-        assert_eq!(data_of(&mut client), Some((40, 0, film::layout(&scenario, &params))));
+        assert_eq!(data_of(&mut client), Some((40, 0, scene_messages::layout(&scenario, &params))));
         assert!(slot.offer(sample(7)).is_none());
         let (id, time, data) = data_of(&mut client).unwrap();
         assert_eq!((id, time), (41, 7 * 200_000_000));
@@ -311,7 +311,7 @@ mod tests {
         subscribe(&mut client, 42, 1);
         subscribe(&mut client, 43, 99);
         client.send(Message::text("nonsense")).unwrap();
-        subscribe(&mut client, 44, film::LAYOUT);
+        subscribe(&mut client, 44, scene_messages::LAYOUT);
         assert_eq!(data_of(&mut client).map(|(id, ..)| id), Some(44));
         slot.end(Some(sample(8)));
         assert_eq!(data_of(&mut client).map(|(id, time, _)| (id, time)), Some((42, 8 * 200_000_000)));

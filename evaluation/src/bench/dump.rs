@@ -5,10 +5,10 @@ use coordinator::record::RecordError;
 use coordinator::record::folder::replace;
 use serde_json::{Value, json};
 use std::path::Path;
-use vodca::mpc::problem::{Plan, Problem};
+use vodca::mpc::problem::{Problem, Solution};
 
 /// One problem with its optimal inputs (m/s), or `null` where its hard rows admit none.
-pub(super) fn problem(family: &str, rows: usize, problem: &Problem<'_>, plan: Option<&Plan>) -> Value {
+pub(super) fn problem(family: &str, rows: usize, problem: &Problem<'_>, plan: Option<&Solution>) -> Value {
     let steps = problem.horizon.steps();
     let pairs = |list: &[vodca::Position]| list[..steps].iter().map(|pair| [pair.x, pair.y]).collect::<Vec<_>>();
     let row = |row: &vodca::mpc::problem::Row| json!({ "step": row.step, "normal": [row.normal.x, row.normal.y], "offset": row.offset, "hard": row.hard });

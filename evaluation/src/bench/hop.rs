@@ -6,7 +6,7 @@ use super::row::{Results, Row};
 use super::{BenchError, Extent, Options, cost};
 use coordinator::latency::Latency;
 use shared::os;
-use shared::place::Place;
+use shared::runtime_dir::RuntimeDir;
 
 /// Passes over all links, so that what disturbs one for a while does not spoil one link alone.
 const PASSES: usize = 20;
@@ -50,7 +50,7 @@ pub(super) fn run(extent: &Extent<'_>, results: &mut Results) -> Result<(), Benc
 fn measure(kind: LinkKind, rounds: u64, latency: &mut Latency) -> Result<(), BenchError> {
     let place = OwnedPlace::create()?;
     let (mut link, events) = link(kind, &place.0, End::First)?;
-    let Place { prefix, root } = place.0.clone();
+    let RuntimeDir { prefix, root } = place.0.clone();
     let partner = Partner::start(PartnerArgs::Hop { link: kind, prefix, root, events: events.to_vec() })?;
     // The partner speaks first: whatever opening took is over then.
     link.receive()?;
@@ -83,12 +83,12 @@ pub(super) fn answer(link: &mut dyn Link) -> Result<(), BenchError> {
 }
 
 /// Shared files of a measurement, deleted when dropped.
-pub(super) struct OwnedPlace(pub(super) Place);
+pub(super) struct OwnedPlace(pub(super) RuntimeDir);
 
 impl OwnedPlace {
     /// A place of this process.
     pub(super) fn create() -> Result<Self, BenchError> {
-        Ok(Self(Place::create()?))
+        Ok(Self(RuntimeDir::create()?))
     }
 }
 

@@ -3,8 +3,8 @@
 use super::iceoryx_links::{Busy, EventFirst, EventSecond, TeamFirst, TeamSecond};
 use super::system::{EventFd, PLAN_WORDS, PlanPage, wait_until};
 use super::{BenchError, failed};
-use shared::place::Place;
 use shared::raw::futex_wake;
+use shared::runtime_dir::RuntimeDir;
 use shared::services::{PolicyAsker, PolicyPort, Services};
 use std::os::unix::net::UnixDatagram;
 use std::path::{Path, PathBuf};
@@ -85,7 +85,7 @@ pub(super) enum End {
 }
 
 /// An end of a link of this kind; files lie in `place`. The numbers are those of the second end.
-pub(super) fn link(kind: LinkKind, place: &Place, end: End) -> Result<(Box<dyn Link>, [i32; 2]), BenchError> {
+pub(super) fn link(kind: LinkKind, place: &RuntimeDir, end: End) -> Result<(Box<dyn Link>, [i32; 2]), BenchError> {
     let page = || {
         let path = PathBuf::from(format!("/dev/shm/{}page", place.prefix));
         match end {
@@ -133,7 +133,7 @@ pub(super) fn link(kind: LinkKind, place: &Place, end: End) -> Result<(Box<dyn L
     Ok((link, numbers))
 }
 
-fn services(place: &Place, end: End) -> Result<Services, BenchError> {
+fn services(place: &RuntimeDir, end: End) -> Result<Services, BenchError> {
     Ok(match end {
         End::First => Services::create(place, 2, true)?,
         End::Second(_) => Services::open(place, 2, true)?,

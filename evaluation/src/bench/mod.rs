@@ -39,7 +39,7 @@ pub use stored::StoredError;
 
 use coordinator::record::RecordError;
 use coordinator::run::RunError;
-use shared::place::PlaceError;
+use shared::runtime_dir::RuntimeDirError;
 use shared::services::ServiceError;
 use shared::stop::StopFlag;
 use std::path::PathBuf;
@@ -138,7 +138,7 @@ pub enum BenchError {
     Record(#[from] RecordError),
     /// The place of shared files.
     #[error(transparent)]
-    Place(#[from] PlaceError),
+    RuntimeDir(#[from] RuntimeDirError),
     /// The exchange.
     #[error(transparent)]
     Service(#[from] ServiceError),

@@ -4,7 +4,7 @@ use super::hop::answer;
 use super::links::{End, LinkKind, link};
 use super::{BenchError, floor, still};
 use shared::os;
-use shared::place::Place;
+use shared::runtime_dir::RuntimeDir;
 use shared::services;
 use shared::stop::StopFlag;
 use std::path::PathBuf;
@@ -69,7 +69,7 @@ pub fn run(args: Args) -> Result<(), BenchError> {
     match args.what {
         PartnerArgs::Hop { link: kind, prefix, root, events } => {
             let numbers = [events.first().copied().unwrap_or(-1), events.get(1).copied().unwrap_or(-1)];
-            let (mut link, _) = link(kind, &Place { prefix, root }, End::Second(numbers))?;
+            let (mut link, _) = link(kind, &RuntimeDir { prefix, root }, End::Second(numbers))?;
             answer(link.as_mut())
         }
         PartnerArgs::Floor { page, members, member } => floor::take_part(&page, members, member),

@@ -13,7 +13,7 @@ use vodca::horizon::Horizon;
 use vodca::mpc::clarabel::Clarabel;
 use vodca::mpc::cross_check::CrossCheck;
 use vodca::mpc::ladder::Ladder;
-use vodca::mpc::problem::{Plan, Problem, QpSolver};
+use vodca::mpc::problem::{Problem, QpSolver, Solution};
 use vodca::mpc::sample::{Family, Sample};
 
 const HORIZONS: [usize; 2] = [20, 49];
@@ -111,7 +111,7 @@ impl Case {
         dumped: &mut Vec<serde_json::Value>,
     ) -> Result<(), BenchError> {
         let (problems, _) = problems(extent.options);
-        let (mut ladder, mut plan) = (Ladder::default(), Plan::default());
+        let (mut ladder, mut plan) = (Ladder::default(), Solution::default());
         for index in 0..CHECKED.min(problems) {
             let sample = self.sample(index);
             let outcome = ladder.solve(&sample.problem(), &mut plan);
@@ -173,8 +173,8 @@ fn changing_horizons(extent: &Extent<'_>, results: &mut Results) -> Result<(), B
 }
 
 /// Solves each problem once. One that is not counted comes first: it touches the solver's memory.
-fn time(samples: &[Sample], times: &mut Latency, mut solve: impl FnMut(&Problem<'_>, &mut Plan) -> bool) {
-    let mut plan = Plan::default();
+fn time(samples: &[Sample], times: &mut Latency, mut solve: impl FnMut(&Problem<'_>, &mut Solution) -> bool) {
+    let mut plan = Solution::default();
     if let Some(first) = samples.first() {
         solve(&first.problem(), &mut plan);
     }

@@ -3,8 +3,8 @@
 use agent::run::{Drive, Launch, RunError, run};
 use shared::stop::StopFlag;
 use std::path::Path;
-use vodca::hearing::Hearing;
 use vodca::horizon::Horizon;
+use vodca::neighbour_estimates::NeighbourEstimates;
 use vodca::prediction::Prediction;
 use vodca::step::{Level, Status, Step};
 use vodca::{Input, Position};
@@ -20,7 +20,7 @@ impl Drive for Still {
         self.position
     }
 
-    fn step(&mut self, _: u64, horizon: Horizon, _: &Hearing) -> Step {
+    fn step(&mut self, _: u64, horizon: Horizon, _: &NeighbourEstimates) -> Step {
         Step {
             position: self.position,
             measured: self.position,
@@ -31,7 +31,7 @@ impl Drive for Still {
             rows: 0,
             level: Level::Baseline,
             status: Status::Solved,
-            shielded: false,
+            filtered: false,
             plan: Prediction::from_states(&self.states[..=horizon.steps()], self.set_point),
             detect_ns: 0,
             solve_ns: 0,

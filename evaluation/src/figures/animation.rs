@@ -1,6 +1,6 @@
 //! A run as a moving SVG (SMIL): it plays wherever a picture is shown, a README included, without a script.
 
-use super::film::{Film, Setting};
+use super::kept_run::{KeptRun, Setting};
 use super::svg::{COLOURS, escaped};
 use std::fmt::Write as _;
 use vodca::Position;
@@ -28,26 +28,26 @@ struct Frame {
     high: Position,
 }
 
-/// Draws `film`: discs of half the separation, the way each has come, its set-point, and its plan ahead. A disc is
+/// Draws `kept`: discs of half the separation, the way each has come, its set-point, and its plan ahead. A disc is
 /// filled while its robot has collision rows.
-pub(super) fn animation(setting: &Setting, film: &Film, title: &str) -> String {
-    let half = film.params.model.min_separation / 2.0;
-    let frame = Frame::around(film, half);
-    let seconds = (film.ticks.len() + REST) as f64 * film.params.model.sample_time / SPEED;
+pub(super) fn animation(setting: &Setting, kept: &KeptRun, title: &str) -> String {
+    let half = kept.params.model.min_separation / 2.0;
+    let frame = Frame::around(kept, half);
+    let seconds = (kept.ticks.len() + REST) as f64 * kept.params.model.sample_time / SPEED;
     let [width, height] = [frame.x(frame.high.x) + MARGIN * SCALE, frame.y(frame.low.y) + MARGIN * SCALE];
-    let mut body = format!("<desc>{}</desc>\n", escaped(&setting.command(&film.horizon)));
-    for obstacle in &film.scenario.obstacles {
+    let mut body = format!("<desc>{}</desc>\n", escaped(&setting.command(&kept.horizon)));
+    for obstacle in &kept.scenario.obstacles {
         let radius = obstacle.radius.unwrap_or(half) * SCALE;
         let [x, y] = frame.at(obstacle.position);
         line(&mut body, format_args!("<circle class=\"o\" cx=\"{x:.0}\" cy=\"{y:.0}\" r=\"{radius:.1}\"/>"));
     }
-    for robot in 0..film.scenario.robots.len() {
-        draw_robot(&mut body, film, &frame, robot, half, seconds);
+    for robot in 0..kept.scenario.robots.len() {
+        draw_robot(&mut body, kept, &frame, robot, half, seconds);
     }
     let foot = height + FOOT - 9.0;
     line(&mut body, format_args!("<text x=\"10\" y=\"{foot:.0}\">{}</text>", escaped(title)));
     let bar: Vec<String> =
-        shown(film).map(|tick| format!("{:.0}", width * tick as f64 / film.ticks.len() as f64)).collect();
+        shown(kept).map(|tick| format!("{:.0}", width * tick as f64 / kept.ticks.len() as f64)).collect();
     line(
         &mut body,
         format_args!(
@@ -63,11 +63,11 @@ pub(super) fn animation(setting: &Setting, film: &Film, title: &str) -> String {
     )
 }
 
-fn draw_robot(body: &mut String, film: &Film, frame: &Frame, robot: usize, half: f64, seconds: f64) {
+fn draw_robot(body: &mut String, kept: &KeptRun, frame: &Frame, robot: usize, half: f64, seconds: f64) {
     let colour = COLOURS[robot % COLOURS.len()];
-    let entry = &film.scenario.robots[robot];
+    let entry = &kept.scenario.robots[robot];
     let radius = entry.radius.unwrap_or(half) * SCALE;
-    let still = (STILL * film.ticks.len() as f64) as usize;
+    let still = (STILL * kept.ticks.len() as f64) as usize;
     let [x, y] = frame.at(entry.set_point);
     line(
         body,
@@ -75,9 +75,9 @@ fn draw_robot(body: &mut String, film: &Film, frame: &Frame, robot: usize, half:
             "<circle class=\"w\" cx=\"{x:.0}\" cy=\"{y:.0}\" r=\"{radius:.1}\" fill=\"none\" stroke=\"{colour}\"/>"
         ),
     );
-    let places: Vec<[f64; 2]> = shown(film).map(|tick| frame.at(place(film, robot, tick))).collect();
-    draw_way(body, &places[..=film.ticks.len()], still, colour, seconds);
-    let plans: Vec<String> = shown(film).map(|tick| plan(film, frame, robot, tick)).collect();
+    let places: Vec<[f64; 2]> = shown(kept).map(|tick| frame.at(place(kept, robot, tick))).collect();
+    draw_way(body, &places[..=kept.ticks.len()], still, colour, seconds);
+    let plans: Vec<String> = shown(kept).map(|tick| plan(kept, frame, robot, tick)).collect();
     line(
         body,
         format_args!(
@@ -88,7 +88,7 @@ fn draw_robot(body: &mut String, film: &Film, frame: &Frame, robot: usize, half:
     );
     let axis = |axis: usize| places.iter().map(|place| format!("{:.1}", place[axis])).collect::<Vec<_>>();
     let (xs, ys) = (axis(0), axis(1));
-    let full: Vec<String> = shown(film).map(|tick| opacity(film, robot, tick)).collect();
+    let full: Vec<String> = shown(kept).map(|tick| opacity(kept, robot, tick)).collect();
     line(
         body,
         format_args!(
@@ -126,22 +126,22 @@ fn draw_way(body: &mut String, places: &[[f64; 2]], still: usize, colour: &str, 
 }
 
 /// The ticks that are shown one after another: all of them, then the end for a while.
-fn shown(film: &Film) -> impl Iterator<Item = usize> {
-    let end = film.ticks.len();
+fn shown(kept: &KeptRun) -> impl Iterator<Item = usize> {
+    let end = kept.ticks.len();
     (0..end + REST).map(move |tick| tick.min(end))
 }
 
 /// Where `robot` is at the start of `tick`; after the last one, where it ended.
-fn place(film: &Film, robot: usize, tick: usize) -> Position {
-    match film.ticks.get(tick) {
+fn place(kept: &KeptRun, robot: usize, tick: usize) -> Position {
+    match kept.ticks.get(tick) {
         Some(steps) => steps[robot].position,
-        None => film.ticks.last().map_or(film.scenario.robots[robot].start, |steps| steps[robot].next_position),
+        None => kept.ticks.last().map_or(kept.scenario.robots[robot].start, |steps| steps[robot].next_position),
     }
 }
 
-fn plan(film: &Film, frame: &Frame, robot: usize, tick: usize) -> String {
-    let last = place(film, robot, tick);
-    let points = (0..PLAN_POINTS).map(|point| match film.ticks.get(tick) {
+fn plan(kept: &KeptRun, frame: &Frame, robot: usize, tick: usize) -> String {
+    let last = place(kept, robot, tick);
+    let points = (0..PLAN_POINTS).map(|point| match kept.ticks.get(tick) {
         Some(steps) => frame.at(along(&steps[robot].plan, point)),
         None => frame.at(last),
     });
@@ -154,8 +154,8 @@ fn along(plan: &Prediction, point: usize) -> Position {
     plan.state(point * plan.horizon().steps() / (PLAN_POINTS - 1))
 }
 
-fn opacity(film: &Film, robot: usize, tick: usize) -> String {
-    let rows = film.ticks.get(tick).map_or(0, |steps| steps[robot].rows);
+fn opacity(kept: &KeptRun, robot: usize, tick: usize) -> String {
+    let rows = kept.ticks.get(tick).map_or(0, |steps| steps[robot].rows);
     if rows > 0 { ".75".into() } else { ".2".into() }
 }
 
@@ -172,10 +172,10 @@ fn line(body: &mut String, element: std::fmt::Arguments<'_>) {
 }
 
 impl Frame {
-    fn around(film: &Film, half: f64) -> Self {
-        let robots = film.scenario.robots.iter().flat_map(|robot| [robot.start, robot.set_point]);
-        let states = film.ticks.iter().flatten().map(|step| step.next_position);
-        let places = robots.chain(states).chain(film.scenario.obstacles.iter().map(|obstacle| obstacle.position));
+    fn around(kept: &KeptRun, half: f64) -> Self {
+        let robots = kept.scenario.robots.iter().flat_map(|robot| [robot.start, robot.set_point]);
+        let states = kept.ticks.iter().flatten().map(|step| step.next_position);
+        let places = robots.chain(states).chain(kept.scenario.obstacles.iter().map(|obstacle| obstacle.position));
         let edge = Position::repeat(half + MARGIN);
         let none = (Position::repeat(f64::INFINITY), Position::repeat(f64::NEG_INFINITY));
         let (low, high) = places.fold(none, |(low, high), place| (low.inf(&(place - edge)), high.sup(&(place + edge))));
@@ -202,8 +202,8 @@ mod tests {
 
     #[test]
     fn every_robot_moves_from_its_start_to_its_set_point_and_the_file_stays_small() {
-        let film = SAFE.run("fixed:20").unwrap();
-        let text = animation(&SAFE, &film, "fourteen");
+        let kept = SAFE.run("fixed:20").unwrap();
+        let text = animation(&SAFE, &kept, "fourteen");
         assert!(text.len() < 300_000, "{} bytes", text.len());
         assert_eq!(text.matches("attributeName=\"cx\"").count(), 14);
         let values = |attribute: &str| {
@@ -211,10 +211,10 @@ mod tests {
             let list = from.split("values=\"").nth(1).unwrap().split('"').next().unwrap();
             list.split(';').map(String::from).collect::<Vec<_>>()
         };
-        let frame = Frame::around(&film, film.params.model.min_separation / 2.0);
-        let robot = &film.scenario.robots[0];
+        let frame = Frame::around(&kept, kept.params.model.min_separation / 2.0);
+        let robot = &kept.scenario.robots[0];
         let (xs, ys) = (values("cx"), values("cy"));
-        assert_eq!(xs.len(), film.ticks.len() + REST);
+        assert_eq!(xs.len(), kept.ticks.len() + REST);
         assert_eq!(
             [&xs[0], &ys[0]].map(|text| text.parse::<f64>().unwrap()),
             frame.at(robot.start).map(|at| (at * 10.0).round() / 10.0)
@@ -222,6 +222,6 @@ mod tests {
         let end = [&xs, &ys].map(|list| list.last().unwrap().parse::<f64>().unwrap());
         let wanted = frame.at(robot.set_point);
         let off = (end[0] - wanted[0]).hypot(end[1] - wanted[1]) / SCALE;
-        assert!(off < film.params.episode.arrival_tolerance + 0.01, "{off} m");
+        assert!(off < kept.params.episode.arrival_tolerance + 0.01, "{off} m");
     }
 }

@@ -5,10 +5,10 @@ use super::switches::Switches;
 use serde::Deserialize;
 use vodca::Position;
 use vodca::conflict::rows::collision_rows;
-use vodca::conflict::{Course, Hazard};
+use vodca::conflict::{Hazard, PredictedMotion};
 use vodca::horizon::Horizon;
 use vodca::mpc::ladder::Ladder;
-use vodca::mpc::problem::{Plan, Problem, Row, SlackPrice, SolveError};
+use vodca::mpc::problem::{Problem, Row, SlackPrice, Solution, SolveError};
 use vodca::mpc::stacked::Stacked;
 use vodca::params::Params;
 use vodca::prediction::Prediction;
@@ -90,9 +90,11 @@ impl Case {
         let Some(Some(own)) = plans.get(self.robot) else { return rows };
         let separation = params.model.min_separation;
         let others = plans.iter().enumerate().filter(|(other, _)| *other != self.robot);
-        let neighbours = others
-            .filter_map(|(_, plan)| Some(Hazard { course: Course::Plan { plan: plan.as_ref()?, age: 0 }, separation }));
-        let obstacles = self.obstacles.iter().map(|at| Hazard { course: Course::Still(place(at)), separation });
+        let neighbours = others.filter_map(|(_, plan)| {
+            Some(Hazard { course: PredictedMotion::Plan { plan: plan.as_ref()?, age: 0 }, separation })
+        });
+        let obstacles =
+            self.obstacles.iter().map(|at| Hazard { course: PredictedMotion::Still(place(at)), separation });
         let hazards = neighbours.chain(obstacles);
         collision_rows(&params.vodca, separation, params.vodca.turn, own, self.horizon, hazards, &mut rows);
         rows
@@ -129,7 +131,7 @@ impl Case {
     }
 
     fn check_optimum(&self, problem: &Problem<'_>, worst: &mut Worst) {
-        let mut plan = Plan::default();
+        let mut plan = Solution::default();
         let outcome = Ladder::default().solve(problem, &mut plan);
         match (outcome, &self.U) {
             (Ok(_), Some(wanted)) if self.feasible => {

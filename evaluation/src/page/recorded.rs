@@ -107,7 +107,7 @@ fn read_step(line: &str, set_point: Position, sample_time: f64) -> Option<Step> 
         rows: fields.get(7)?.parse().ok()?,
         level: Level::from_word(fields.get(8)?)?,
         status: Status::from_word(fields.get(9)?)?,
-        shielded: false,
+        filtered: false,
         plan: Prediction::roll_out(position, set_point, sample_time, &[input]),
         detect_ns: 0,
         solve_ns: 0,

@@ -12,7 +12,7 @@ pub(super) struct Loss {
     pub(super) robot: usize,
     /// Number of what was near: robots first, then obstacles.
     pub(super) hazard: usize,
-    /// m, as [`Course::min_separation`].
+    /// m, as [`PredictedMotion::min_separation`].
     pub(super) separation: f64,
     /// What the pair had to keep, m.
     pub(super) kept: f64,
@@ -20,10 +20,10 @@ pub(super) struct Loss {
 
 /// What a trajectory shows.
 #[derive(Clone, Debug)]
-pub(super) struct Course {
+pub(super) struct PredictedMotion {
     /// Smallest separation of the run, m, radii beyond min_separation / 2 taken off; infinite alone.
     pub(super) min_separation: f64,
-    /// The first loss of separation, see [`Course::follow`].
+    /// The first loss of separation, see [`PredictedMotion::follow`].
     pub(super) loss: Option<Loss>,
     /// Ticks in which someone was nearer than min_separation (by more than rounding).
     pub(super) ticks_below: u64,
@@ -35,7 +35,7 @@ pub(super) struct Course {
     pub(super) distances: Vec<f64>,
 }
 
-impl Course {
+impl PredictedMotion {
     /// Follows everybody through the run.
     ///
     /// A pair may not come nearer than `cell.separation`, and while it is still nearer than that (a close

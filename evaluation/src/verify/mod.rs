@@ -9,7 +9,7 @@ mod table;
 #[cfg(test)]
 mod tests;
 
-use geometry::Course;
+use geometry::PredictedMotion;
 use serde_json::Value;
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -47,7 +47,7 @@ pub enum VerifyError {
 
 /// Where something is off.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Place {
+pub struct RuntimeDir {
     /// Line of trajectory.csv, from 1.
     pub line: Option<usize>,
     /// k.
@@ -56,7 +56,7 @@ pub struct Place {
     pub robot: Option<usize>,
 }
 
-impl Place {
+impl RuntimeDir {
     fn line(line: usize) -> Self {
         Self { line: Some(line), ..Self::default() }
     }
@@ -70,7 +70,7 @@ impl Place {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Finding {
     /// Where.
-    pub place: Place,
+    pub place: RuntimeDir,
     /// What was checked.
     pub what: String,
     /// What was found.
@@ -80,7 +80,7 @@ pub struct Finding {
 }
 
 impl Finding {
-    fn new(place: Place, what: &str, value: &str, allowed: &str) -> Self {
+    fn new(place: RuntimeDir, what: &str, value: &str, allowed: &str) -> Self {
         Self { place, what: what.into(), value: value.into(), allowed: allowed.into() }
     }
 }
@@ -154,7 +154,7 @@ fn check(trajectory: &str, horizons: &str, scenario: &Scenario, params: &Params,
         Ok(table) => table,
         Err(finding) => return Report { findings: vec![finding], robots, cut, ..Report::default() },
     };
-    let course = Course::follow(&table, scenario, params);
+    let course = PredictedMotion::follow(&table, scenario, params);
     let findings = [
         starts(&table, scenario),
         bounds(&table, params),
@@ -182,7 +182,7 @@ fn starts(table: &Table, scenario: &Scenario) -> Option<Finding> {
         let [x, y] = table.position(0, i);
         let off = x != robot.start.x || y != robot.start.y;
         let allowed = format!("[{}, {}] m", robot.start.x, robot.start.y);
-        off.then(|| Finding::new(Place::at(0, i), "start", &format!("[{x}, {y}] m"), &allowed))
+        off.then(|| Finding::new(RuntimeDir::at(0, i), "start", &format!("[{x}, {y}] m"), &allowed))
     })
 }
 
@@ -193,7 +193,7 @@ fn bounds(table: &Table, params: &Params) -> Option<Finding> {
         let over = row.ux.abs().max(row.uy.abs());
         let allowed = format!("at most {most} m/s per axis");
         (over > most + BOUND)
-            .then(|| Finding::new(Place::at(k, i), "input", &format!("[{}, {}] m/s", row.ux, row.uy), &allowed))
+            .then(|| Finding::new(RuntimeDir::at(k, i), "input", &format!("[{}, {}] m/s", row.ux, row.uy), &allowed))
     })
 }
 
@@ -206,7 +206,7 @@ fn motion(table: &Table, params: &Params) -> Option<Finding> {
         let (model_x, model_y) = (row.x + row.ux * h, row.y + row.uy * h);
         let allowed = format!("[{model_x}, {model_y}] m by the model from tick {k}");
         (x != model_x || y != model_y)
-            .then(|| Finding::new(Place::at(k + 1, i), "position", &format!("[{x}, {y}] m"), &allowed))
+            .then(|| Finding::new(RuntimeDir::at(k + 1, i), "position", &format!("[{x}, {y}] m"), &allowed))
     })
 }
 
@@ -225,22 +225,27 @@ fn chosen_horizons(table: &Table, horizons: &str, cut: bool) -> Option<Finding> 
             let robot = own.split(',').zip(line.split(',')).position(|(a, b)| a != b).unwrap_or(1).saturating_sub(1);
             let value = rows.get(robot).map_or(String::new(), |row| row.horizon.to_string());
             let allowed = line.split(',').nth(robot + 1).unwrap_or("missing");
-            return Some(Finding::new(Place::at(k, robot), "horizon", &value, &format!("{allowed} (horizons.csv)")));
+            return Some(Finding::new(
+                RuntimeDir::at(k, robot),
+                "horizon",
+                &value,
+                &format!("{allowed} (horizons.csv)"),
+            ));
         }
     }
     None
 }
 
 /// With cells on, nobody comes nearer than they keep, unless positions are measured worse than the cells
-/// allow for. See [`Course::follow`] for starts that were nearer already.
-fn guarantee(course: &Course, scenario: &Scenario, params: &Params) -> Option<Finding> {
+/// allow for. See [`PredictedMotion::follow`] for starts that were nearer already.
+fn guarantee(course: &PredictedMotion, scenario: &Scenario, params: &Params) -> Option<Finding> {
     let loss = course.loss.filter(|_| promised(params))?;
     let what = match loss.hazard.checked_sub(scenario.robots.len()) {
         None => format!("separation from robot {}", loss.hazard),
         Some(obstacle) => format!("separation from obstacle {obstacle}"),
     };
     let (value, allowed) = (format!("{} m", loss.separation), format!("at least {} m", loss.kept));
-    Some(Finding::new(Place::at(loss.tick, loss.robot), &what, &value, &allowed))
+    Some(Finding::new(RuntimeDir::at(loss.tick, loss.robot), &what, &value, &allowed))
 }
 
 /// Whether the parameters promise a separation at all.
@@ -249,7 +254,7 @@ fn promised(params: &Params) -> bool {
 }
 
 /// What the summary claims is what the trajectory shows.
-fn claims(table: &Table, course: &Course, params: &Params, summary: &Value) -> Vec<Finding> {
+fn claims(table: &Table, course: &PredictedMotion, params: &Params, summary: &Value) -> Vec<Finding> {
     let mut findings = Vec::new();
     let mut compare = |name: &str, claimed: &Value, own: Value| {
         let equal = match (claimed.as_f64(), own.as_f64()) {
@@ -258,7 +263,12 @@ fn claims(table: &Table, course: &Course, params: &Params, summary: &Value) -> V
         };
         if !equal {
             let what = format!("{name} in summary.json");
-            findings.push(Finding::new(Place::default(), &what, &claimed.to_string(), &format!("{own} (recomputed)")));
+            findings.push(Finding::new(
+                RuntimeDir::default(),
+                &what,
+                &claimed.to_string(),
+                &format!("{own} (recomputed)"),
+            ));
         }
     };
     let arrived = course.distances.iter().all(|&left| left < params.episode.arrival_tolerance);

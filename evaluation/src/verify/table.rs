@@ -1,6 +1,6 @@
 //! The verifier's own reading of `trajectory.csv`, on purpose not shared with the code that writes it.
 
-use super::{Finding, Place};
+use super::{Finding, RuntimeDir};
 use std::collections::BTreeMap;
 
 /// One row with an input.
@@ -32,7 +32,7 @@ const STATUSES: [&str; 5] = ["solved", "relaxed", "held", "shifted", "stopped"];
 pub(super) fn read(text: &str, robots: usize) -> Result<Table, Finding> {
     let table = read_rows(text, robots)?;
     if table.last.len() != robots {
-        let place = Place { tick: Some(table.ticks.len() as u64), ..Place::default() };
+        let place = RuntimeDir { tick: Some(table.ticks.len() as u64), ..RuntimeDir::default() };
         let what = "number of last positions (a run that was cut has none, and no summary.json)";
         return Err(Finding::new(place, what, &table.last.len().to_string(), &robots.to_string()));
     }
@@ -56,16 +56,16 @@ fn read_rows(text: &str, robots: usize) -> Result<Table, Finding> {
     let mut lines = text.split_terminator('\n').enumerate();
     let header = lines.next().map_or("", |(_, line)| line);
     if header != COLUMNS.join(",") {
-        return Err(Finding::new(Place::line(1), "header", header, &COLUMNS.join(",")));
+        return Err(Finding::new(RuntimeDir::line(1), "header", header, &COLUMNS.join(",")));
     }
     if !text.ends_with('\n') {
         let last = text.lines().count();
-        return Err(Finding::new(Place::line(last), "end of the file", "a cut line", "a whole line"));
+        return Err(Finding::new(RuntimeDir::line(last), "end of the file", "a cut line", "a whole line"));
     }
     let mut table = Table::default();
     for (n, line) in lines {
         let (tick, robot) = ((n - 1) / robots, (n - 1) % robots);
-        let place = Place { line: Some(n + 1), tick: Some(tick as u64), robot: Some(robot) };
+        let place = RuntimeDir { line: Some(n + 1), tick: Some(tick as u64), robot: Some(robot) };
         let fields: Vec<&str> = line.split(',').collect();
         if fields.len() != COLUMNS.len() {
             return Err(Finding::new(place, "number of fields", &fields.len().to_string(), "10"));
@@ -117,7 +117,7 @@ impl Table {
 }
 
 struct Field<'a> {
-    place: &'a Place,
+    place: &'a RuntimeDir,
     fields: &'a [&'a str],
 }
 

@@ -177,7 +177,7 @@ fn loss_on_the_way(places: &[f64], noise: f64) -> Option<geometry::Loss> {
         text += &row(tick, 0, 0.0, rest);
         text += &row(tick, 1, x, rest);
     }
-    Course::follow(&table::read(&text, 2).unwrap(), &scenario, &params).loss
+    PredictedMotion::follow(&table::read(&text, 2).unwrap(), &scenario, &params).loss
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! `train`: the command.
 
-use super::plan::Plan;
+use super::config::TrainingConfig;
 use super::state::State;
 use super::{Budget, Progress, Trainer};
 use anyhow::Context;
@@ -21,7 +21,7 @@ Examples:
   tensorboard --logdir trainings
 The best actor so far is always in DIR/best: ./run.sh 2 --profile paper --policy DIR/best")]
 pub struct Args {
-    /// Plan to begin with; the other options change it
+    /// TrainingConfig to begin with; the other options change it
     #[arg(long, value_name = "FILE", conflicts_with = "resume")]
     plan: Option<PathBuf>,
     /// Scenario: file, built-in name or family; with `any` as its seed every episode has a layout of its own
@@ -89,10 +89,10 @@ pub fn run(args: &Args) -> anyhow::Result<()> {
     Ok(())
 }
 
-fn plan(args: &Args) -> anyhow::Result<Plan> {
+fn plan(args: &Args) -> anyhow::Result<TrainingConfig> {
     let mut plan = match &args.plan {
-        Some(file) => Plan::read(file)?,
-        None => Plan::default(),
+        Some(file) => TrainingConfig::read(file)?,
+        None => TrainingConfig::default(),
     };
     if let Some(scenario) = &args.scenario {
         plan.scenario.clone_from(scenario);

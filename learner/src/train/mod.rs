@@ -6,8 +6,8 @@
 //! on who was quicker, so a training can be repeated and resumed exactly.
 
 pub mod command;
+pub mod config;
 pub mod curve;
-pub mod plan;
 pub mod score;
 pub mod session;
 pub mod state;
@@ -15,8 +15,8 @@ pub mod state;
 use crate::Learner;
 use crate::export::{ExportError, export};
 use crate::rollouts::{RolloutsError, remember_shard};
+use config::TrainingConfig;
 use curve::{Curve, CurveError, Point};
-use plan::Plan;
 use policy::contract::{Contract, Observation};
 use policy::digest::sha256_of;
 use policy::folder::{FolderError, PolicyFolder, resolve};
@@ -94,7 +94,7 @@ pub struct Progress<'a> {
 
 /// A training under way.
 pub struct Trainer {
-    plan: Plan,
+    plan: TrainingConfig,
     out: PathBuf,
     learner: Learner,
     contract: Contract,
@@ -114,7 +114,7 @@ pub struct Trainer {
 impl Trainer {
     /// Begins a training in the folder `out`, which must be new or empty: plays the warm-up, starts
     /// the sessions and leaves the first checkpoint. `None`: somebody asked to stop before.
-    pub fn begin(plan: Plan, out: &Path, stop: &StopFlag) -> Result<Option<Self>, TrainError> {
+    pub fn begin(plan: TrainingConfig, out: &Path, stop: &StopFlag) -> Result<Option<Self>, TrainError> {
         let scenario = layouts(&plan)?; // first: a plan that cannot be used leaves no folder
         let lock = state::prepare(out, &plan)?;
         let robots = scenario[0].robots.len();
@@ -138,7 +138,7 @@ impl Trainer {
     }
 
     fn start(
-        plan: Plan,
+        plan: TrainingConfig,
         out: &Path,
         learner: Learner,
         state: State,
@@ -304,7 +304,7 @@ impl Trainer {
     }
 }
 
-fn rollout_arguments(plan: &Plan, stream: u64) -> Vec<String> {
+fn rollout_arguments(plan: &TrainingConfig, stream: u64) -> Vec<String> {
     let mut arguments = plan.session_arguments();
     arguments.extend(["--start-jitter".into(), plan.start_jitter.to_string()]);
     arguments.extend(["--seed".into(), vodca::random::episode_seed(plan.seed, 1 + stream).to_string()]);
@@ -315,7 +315,7 @@ fn rollout_arguments(plan: &Plan, stream: u64) -> Vec<String> {
 }
 
 /// The layout, or some of the family's.
-fn layouts(plan: &Plan) -> Result<Vec<Scenario>, TrainError> {
+fn layouts(plan: &TrainingConfig) -> Result<Vec<Scenario>, TrainError> {
     let profile = plan.profile.parse()?;
     let one = |spec: &str| Ok::<_, TrainError>(set_up(Some(spec), None, profile, &plan.set)?.0);
     match plan.scenario.strip_suffix(":any") {
@@ -325,7 +325,7 @@ fn layouts(plan: &Plan) -> Result<Vec<Scenario>, TrainError> {
 }
 
 /// Positions scaled to [-1, 1] over everything that stands in the layouts.
-fn contract(plan: &Plan, layouts: &[Scenario]) -> Contract {
+fn contract(plan: &TrainingConfig, layouts: &[Scenario]) -> Contract {
     let points = layouts.iter().flat_map(|layout| {
         let robots = layout.robots.iter().flat_map(|robot| [robot.start, robot.set_point]);
         robots.chain(layout.obstacles.iter().map(|obstacle| obstacle.position))

@@ -1,6 +1,6 @@
 //! What a training keeps on the disk: its plan, and checkpoints from which it goes on exactly.
 
-use super::plan::{Plan, PlanError};
+use super::config::{TrainingConfig, TrainingConfigError};
 use super::score::Score;
 use crate::Learner;
 use crate::checkpoint::CheckpointError;
@@ -79,7 +79,7 @@ pub enum StateError {
     },
     /// The plan.
     #[error(transparent)]
-    Plan(#[from] PlanError),
+    TrainingConfig(#[from] TrainingConfigError),
     /// The learner.
     #[error(transparent)]
     Learner(#[from] CheckpointError),
@@ -113,7 +113,7 @@ impl Lock {
 }
 
 /// Makes the folder of a training, which must be new or empty, and writes its plan there.
-pub fn prepare(out: &Path, plan: &Plan) -> Result<Lock, StateError> {
+pub fn prepare(out: &Path, plan: &TrainingConfig) -> Result<Lock, StateError> {
     fs::create_dir_all(out).map_err(io("make", out))?;
     if fs::read_dir(out).map_err(io("list", out))?.next().is_some() {
         return Err(StateError::NotEmpty(out.to_owned()));
@@ -154,10 +154,10 @@ pub fn save(out: &Path, learner: &Learner, state: &State) -> Result<(), StateErr
 }
 
 /// Reads the newest checkpoint in `out`.
-pub fn load(out: &Path) -> Result<(Plan, Learner, State), StateError> {
-    let plan = Plan::read(&out.join(PLAN_FILE)).map_err(|error| match error {
-        PlanError::File { .. } => StateError::None(out.to_owned()),
-        other => StateError::Plan(other),
+pub fn load(out: &Path) -> Result<(TrainingConfig, Learner, State), StateError> {
+    let plan = TrainingConfig::read(&out.join(PLAN_FILE)).map_err(|error| match error {
+        TrainingConfigError::File { .. } => StateError::None(out.to_owned()),
+        other => StateError::TrainingConfig(other),
     })?;
     let newest = checkpoints(out).pop().ok_or_else(|| StateError::None(out.to_owned()))?;
     let learner = Learner::load(&newest.join(LEARNER_FILE))?;
@@ -188,8 +188,8 @@ mod tests {
     fn the_newest_two_checkpoints_stay_and_the_newest_is_read() {
         let place = tempfile::tempdir().unwrap();
         let out = place.path().join("training");
-        let lock = prepare(&out, &Plan::default()).unwrap();
-        assert!(matches!(prepare(&out, &Plan::default()), Err(StateError::NotEmpty(_))));
+        let lock = prepare(&out, &TrainingConfig::default()).unwrap();
+        assert!(matches!(prepare(&out, &TrainingConfig::default()), Err(StateError::NotEmpty(_))));
         assert!(matches!(load(&out), Err(StateError::None(_))));
         let settings = Settings { hidden: 4, batch: 4, replay_rows: 8, ..Settings::default() };
         let learner = Learner::new(4, 2, settings, 1);
@@ -198,7 +198,7 @@ mod tests {
         }
         assert_eq!(checkpoints(&out).len(), 2);
         let (plan, _, state) = load(&out).unwrap();
-        assert_eq!((plan, state.round, state.owed), (Plan::default(), 20, 0.25));
+        assert_eq!((plan, state.round, state.owed), (TrainingConfig::default(), 20, 0.25));
         assert!(matches!(Lock::take(&out), Err(StateError::Busy(_))));
         drop(lock);
         Lock::take(&out).unwrap();
@@ -209,7 +209,7 @@ mod tests {
         let place = tempfile::tempdir().unwrap();
         let message = || load(place.path()).unwrap_err().to_string();
         assert!(matches!(Lock::take(&place.path().join("none")), Err(StateError::None(_))));
-        let _lock = prepare(place.path(), &Plan::default()).unwrap();
+        let _lock = prepare(place.path(), &TrainingConfig::default()).unwrap();
         let settings = Settings { hidden: 4, batch: 4, replay_rows: 8, ..Settings::default() };
         save(place.path(), &Learner::new(4, 2, settings, 1), &State::default()).unwrap();
         fs::write(place.path().join("checkpoints/00000000/state.json"), "{").unwrap();

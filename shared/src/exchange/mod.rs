@@ -8,15 +8,15 @@
 //! *Invariant*: plans are selected by tick number, never "the latest": with 14 robots half of all
 //! latest plans already belong to the current tick.
 
-mod hub;
+mod coordinator_port;
 mod peer;
 mod relay;
 
-pub use hub::Hub;
+pub use coordinator_port::CoordinatorPort;
 
 use crate::messages::{Announcement, Report, order};
 use crate::os;
-use crate::place::Place;
+use crate::runtime_dir::RuntimeDir;
 use crate::services::{ServiceError, Services};
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
@@ -83,7 +83,7 @@ pub trait Exchange {
 /// Opens robot `robot`'s side of the exchange of a run.
 pub fn open(
     kind: Kind,
-    place: &Place,
+    place: &RuntimeDir,
     robots: usize,
     robot: usize,
     epoch: u64,

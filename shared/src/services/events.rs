@@ -1,7 +1,7 @@
 //! Waking by events of iceoryx2: between the coordinator and the policy server.
 
 use super::{Alarm, Ipc, ServiceError, failed};
-use crate::place::Place;
+use crate::runtime_dir::RuntimeDir;
 use iceoryx2::port::listener::{Listener, ListenerWaitError};
 use iceoryx2::port::notifier::Notifier;
 use iceoryx2::prelude::*;
@@ -9,15 +9,15 @@ use std::time::Duration;
 
 /// Wakes who listens, by an event of iceoryx2.
 #[derive(Debug)]
-pub(super) struct Bell {
+pub(super) struct EventNotifier {
     notifier: Notifier<Ipc>,
-    place: Place,
+    place: RuntimeDir,
 }
 
-impl Bell {
-    pub(super) fn new(bell: &Alarm, place: &Place) -> Result<Self, ServiceError> {
-        let notifier = bell.notifier_builder().create();
-        let notifier = notifier.map_err(|error| failed(place, "ring", bell.name().as_str(), error))?;
+impl EventNotifier {
+    pub(super) fn new(event: &Alarm, place: &RuntimeDir) -> Result<Self, ServiceError> {
+        let notifier = event.notifier_builder().create();
+        let notifier = notifier.map_err(|error| failed(place, "ring", event.name().as_str(), error))?;
         Ok(Self { notifier, place: place.clone() })
     }
 
@@ -28,15 +28,15 @@ impl Bell {
 
 /// Listens to such events.
 #[derive(Debug)]
-pub(super) struct Ear {
+pub(super) struct EventListener {
     listener: Listener<Ipc>,
-    place: Place,
+    place: RuntimeDir,
 }
 
-impl Ear {
-    pub(super) fn new(bell: &Alarm, place: &Place) -> Result<Self, ServiceError> {
-        let listener = bell.listener_builder().create();
-        let listener = listener.map_err(|error| failed(place, "listen to", bell.name().as_str(), error))?;
+impl EventListener {
+    pub(super) fn new(event: &Alarm, place: &RuntimeDir) -> Result<Self, ServiceError> {
+        let listener = event.listener_builder().create();
+        let listener = listener.map_err(|error| failed(place, "listen to", event.name().as_str(), error))?;
         Ok(Self { listener, place: place.clone() })
     }
 

@@ -1,8 +1,8 @@
 //! The two services between coordinator and policy server. They exist only in runs with a policy.
 
-use super::{Bell, Ear, Maker, Receiver, Role, Sender, ServiceError};
+use super::{EventListener, EventNotifier, Maker, Receiver, Role, Sender, ServiceError};
 use crate::messages::{Observation, PolicyAnswer};
-use crate::place::Place;
+use crate::runtime_dir::RuntimeDir;
 use std::time::Duration;
 
 const OBSERVATIONS: &str = "vodca/policy/observations";
@@ -14,27 +14,27 @@ const ANSWER_BELL: &str = "vodca/policy/answer";
 #[derive(Debug)]
 pub struct PolicyAsker {
     questions: Sender<Observation>,
-    bell: Bell,
+    notifier: EventNotifier,
     answers: Receiver<PolicyAnswer>,
-    ear: Ear,
+    listener: EventListener,
 }
 
 impl PolicyAsker {
     /// Makes the services of a run.
-    pub fn create(place: &Place) -> Result<Self, ServiceError> {
+    pub fn create(place: &RuntimeDir) -> Result<Self, ServiceError> {
         let services = PolicyServices::new(place, Role::Create)?;
         Ok(Self {
             questions: Sender::new(&services.observations, place)?,
-            bell: Bell::new(&services.ask_bell, place)?,
+            notifier: EventNotifier::new(&services.ask_bell, place)?,
             answers: Receiver::new(&services.answers, place)?,
-            ear: Ear::new(&services.answer_bell, place)?,
+            listener: EventListener::new(&services.answer_bell, place)?,
         })
     }
 
     /// Publishes an observation and wakes the server.
     pub fn ask(&self, observation: Observation) -> Result<(), ServiceError> {
         self.questions.send(observation)?;
-        self.bell.ring()
+        self.notifier.ring()
     }
 
     /// The next unread answer; `None`: nothing there.
@@ -44,7 +44,7 @@ impl PolicyAsker {
 
     /// Waits until something may have been answered, a signal came, or `limit` has passed.
     pub fn wait(&self, limit: Duration) -> Result<(), ServiceError> {
-        self.ear.wait(limit)
+        self.listener.wait(limit)
     }
 }
 
@@ -52,20 +52,20 @@ impl PolicyAsker {
 #[derive(Debug)]
 pub struct PolicyPort {
     questions: Receiver<Observation>,
-    ear: Ear,
+    listener: EventListener,
     answers: Sender<PolicyAnswer>,
-    bell: Bell,
+    notifier: EventNotifier,
 }
 
 impl PolicyPort {
     /// Opens the services that the coordinator made.
-    pub fn open(place: &Place) -> Result<Self, ServiceError> {
+    pub fn open(place: &RuntimeDir) -> Result<Self, ServiceError> {
         let services = PolicyServices::new(place, Role::Open)?;
         Ok(Self {
             questions: Receiver::new(&services.observations, place)?,
-            ear: Ear::new(&services.ask_bell, place)?,
+            listener: EventListener::new(&services.ask_bell, place)?,
             answers: Sender::new(&services.answers, place)?,
-            bell: Bell::new(&services.answer_bell, place)?,
+            notifier: EventNotifier::new(&services.answer_bell, place)?,
         })
     }
 
@@ -81,12 +81,12 @@ impl PolicyPort {
     /// Publishes an answer and wakes the coordinator.
     pub fn answer(&self, answer: PolicyAnswer) -> Result<(), ServiceError> {
         self.answers.send(answer)?;
-        self.bell.ring()
+        self.notifier.ring()
     }
 
     /// Waits until something may have been asked, a signal came, or `limit` has passed.
     pub fn wait(&self, limit: Duration) -> Result<(), ServiceError> {
-        self.ear.wait(limit)
+        self.listener.wait(limit)
     }
 }
 
@@ -98,15 +98,15 @@ struct PolicyServices {
 }
 
 impl PolicyServices {
-    fn new(place: &Place, role: Role) -> Result<Self, ServiceError> {
+    fn new(place: &RuntimeDir, role: Role) -> Result<Self, ServiceError> {
         // One coordinator and one server; a server killed and started again takes another of the
         // few places, because nobody cleans up during a run.
         let maker = Maker::new(place, 1, role)?;
         Ok(Self {
             observations: maker.channel(OBSERVATIONS, maker.few, maker.few)?,
             answers: maker.channel(ANSWERS, maker.few, maker.few)?,
-            ask_bell: maker.bell(ASK_BELL, maker.few, maker.few)?,
-            answer_bell: maker.bell(ANSWER_BELL, maker.few, maker.few)?,
+            ask_bell: maker.notifier(ASK_BELL, maker.few, maker.few)?,
+            answer_bell: maker.notifier(ANSWER_BELL, maker.few, maker.few)?,
         })
     }
 }

@@ -1,8 +1,8 @@
 //! Thin typed ports: what a process says and hears.
 
-use super::{Channel, Ipc, ReportBell, ReportEar, ServiceError, TickBell, TickEar, failed};
+use super::{Channel, Ipc, ReportListener, ReportNotifier, ServiceError, TickListener, TickNotifier, failed};
 use crate::messages::{Announcement, Plan, Report};
-use crate::place::Place;
+use crate::runtime_dir::RuntimeDir;
 use iceoryx2::port::publisher::Publisher;
 use iceoryx2::port::subscriber::Subscriber;
 use iceoryx2::port::update_connections::UpdateConnections;
@@ -15,11 +15,11 @@ use std::time::Duration;
 #[derive(Debug)]
 pub struct Sender<Payload: Debug + ZeroCopySend + 'static> {
     publisher: Publisher<Ipc, Payload, ()>,
-    place: Place,
+    place: RuntimeDir,
 }
 
 impl<Payload: Debug + ZeroCopySend + Copy + 'static> Sender<Payload> {
-    pub(super) fn new(service: &Channel<Payload>, place: &Place) -> Result<Self, ServiceError> {
+    pub(super) fn new(service: &Channel<Payload>, place: &RuntimeDir) -> Result<Self, ServiceError> {
         let publisher = service.publisher_builder().create();
         let publisher = publisher.map_err(|error| failed(place, "publish on", service.name().as_str(), error))?;
         Ok(Self { publisher, place: place.clone() })
@@ -45,11 +45,11 @@ impl<Payload: Debug + ZeroCopySend + Copy + 'static> Sender<Payload> {
 #[derive(Debug)]
 pub struct Receiver<Payload: Debug + ZeroCopySend + 'static> {
     subscriber: Subscriber<Ipc, Payload, ()>,
-    place: Place,
+    place: RuntimeDir,
 }
 
 impl<Payload: Debug + ZeroCopySend + Copy + 'static> Receiver<Payload> {
-    pub(super) fn new(service: &Channel<Payload>, place: &Place) -> Result<Self, ServiceError> {
+    pub(super) fn new(service: &Channel<Payload>, place: &RuntimeDir) -> Result<Self, ServiceError> {
         let subscriber = service.subscriber_builder().create();
         let subscriber = subscriber.map_err(|error| failed(place, "subscribe to", service.name().as_str(), error))?;
         Ok(Self { subscriber, place: place.clone() })
@@ -65,8 +65,8 @@ impl<Payload: Debug + ZeroCopySend + Copy + 'static> Receiver<Payload> {
 #[derive(Debug)]
 pub struct Announcer {
     pub(super) publisher: Publisher<Ipc, [Plan], Announcement>,
-    pub(super) bell: TickBell,
-    pub(super) place: Place,
+    pub(super) notifier: TickNotifier,
+    pub(super) place: RuntimeDir,
 }
 
 impl Announcer {
@@ -79,7 +79,7 @@ impl Announcer {
         let sample =
             if plans.is_empty() { sample.write_from_fn(|_| Plan::EMPTY) } else { sample.write_from_slice(plans) };
         sample.send().map_err(|error| failed(&self.place, "send", "an announcement", error))?;
-        self.bell.ring();
+        self.notifier.ring();
         Ok(())
     }
 }
@@ -88,14 +88,14 @@ impl Announcer {
 #[derive(Debug)]
 pub struct Announcements {
     pub(super) subscriber: Subscriber<Ipc, [Plan], Announcement>,
-    pub(super) ear: TickEar,
-    pub(super) place: Place,
+    pub(super) listener: TickListener,
+    pub(super) place: RuntimeDir,
 }
 
 impl Announcements {
     /// The next unread announcement handed to `read` with its plans; `None`: nothing there.
     pub fn receive<T>(&self, read: impl FnOnce(&Announcement, &[Plan]) -> T) -> Result<Option<T>, ServiceError> {
-        self.ear.look();
+        self.listener.look();
         let sample =
             self.subscriber.receive().map_err(|error| failed(&self.place, "receive", "an announcement", error))?;
         Ok(sample.map(|sample| {
@@ -108,7 +108,7 @@ impl Announcements {
     /// Waits until something was announced since the last [`Self::receive`], a signal came, or `limit` has
     /// passed.
     pub fn wait(&self, limit: Duration) {
-        self.ear.wait(limit);
+        self.listener.wait(limit);
     }
 }
 
@@ -116,14 +116,14 @@ impl Announcements {
 #[derive(Debug)]
 pub struct Reporter {
     pub(super) sender: Sender<Report>,
-    pub(super) bell: ReportBell,
+    pub(super) notifier: ReportNotifier,
 }
 
 impl Reporter {
     /// Publishes `report`, then wakes the coordinator.
     pub fn report(&self, report: Report) -> Result<(), ServiceError> {
         self.sender.send(report)?;
-        self.bell.ring();
+        self.notifier.ring();
         Ok(())
     }
 }
@@ -132,7 +132,7 @@ impl Reporter {
 #[derive(Debug)]
 pub struct Reports {
     pub(super) receiver: Receiver<Report>,
-    pub(super) ear: ReportEar,
+    pub(super) listener: ReportListener,
 }
 
 impl Reports {
@@ -143,17 +143,17 @@ impl Reports {
 
     /// Takes note of what was reported so far: what [`Self::wait`] waits for comes after it.
     pub fn look(&self) {
-        self.ear.look();
+        self.listener.look();
     }
 
     /// Nobody need wake this process before `reports` more were sent: it will be busy, or wait.
     pub fn expect(&self, reports: usize) {
-        self.ear.expect(reports);
+        self.listener.expect(reports);
     }
 
     /// Waits until `reports` more were sent since the last [`Self::look`], a signal came, or `limit` has
     /// passed.
     pub fn wait(&self, reports: usize, limit: Duration) {
-        self.ear.wait(reports, limit);
+        self.listener.wait(reports, limit);
     }
 }

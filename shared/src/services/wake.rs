@@ -6,8 +6,8 @@
 //! *Invariant*: a message is sent before its counter moves, and a reader notes the counter before it reads.
 
 use super::{Role, ServiceError};
-use crate::place::Place;
 use crate::raw::{SharedPage, Woken, futex_wait, futex_wake};
+use crate::runtime_dir::RuntimeDir;
 use std::cell::Cell;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -31,7 +31,7 @@ pub(super) struct WakePage(SharedPage);
 
 impl WakePage {
     /// Makes or opens it; it is deleted with all files of `place`.
-    pub(super) fn new(place: &Place, role: Role) -> Result<Self, ServiceError> {
+    pub(super) fn new(place: &RuntimeDir, role: Role) -> Result<Self, ServiceError> {
         let path = PathBuf::from(format!("/dev/shm/{}wake", place.prefix));
         let page = match role {
             Role::Create => SharedPage::create(&path, WORDS, 0),
@@ -45,11 +45,11 @@ impl WakePage {
     }
 }
 
-/// The coordinator's bell for all robots.
+/// The coordinator's notifier for all robots.
 #[derive(Debug)]
-pub(super) struct TickBell(Arc<WakePage>);
+pub(super) struct TickNotifier(Arc<WakePage>);
 
-impl TickBell {
+impl TickNotifier {
     pub(super) fn new(page: &Arc<WakePage>) -> Self {
         Self(page.clone())
     }
@@ -62,14 +62,14 @@ impl TickBell {
     }
 }
 
-/// A robot's ear for it.
+/// A robot's listener for it.
 #[derive(Debug)]
-pub(super) struct TickEar {
+pub(super) struct TickListener {
     page: Arc<WakePage>,
     seen: Cell<u32>,
 }
 
-impl TickEar {
+impl TickListener {
     pub(super) fn new(page: &Arc<WakePage>) -> Self {
         Self { page: page.clone(), seen: Cell::new(page.0.word(TICKS).load(SeqCst)) }
     }
@@ -85,11 +85,11 @@ impl TickEar {
     }
 }
 
-/// A robot's bell for the coordinator.
+/// A robot's notifier for the coordinator.
 #[derive(Debug)]
-pub(super) struct ReportBell(Arc<WakePage>);
+pub(super) struct ReportNotifier(Arc<WakePage>);
 
-impl ReportBell {
+impl ReportNotifier {
     pub(super) fn new(page: &Arc<WakePage>) -> Self {
         Self(page.clone())
     }
@@ -104,14 +104,14 @@ impl ReportBell {
     }
 }
 
-/// The coordinator's ear for reports.
+/// The coordinator's listener for reports.
 #[derive(Debug)]
-pub(super) struct ReportEar {
+pub(super) struct ReportListener {
     page: Arc<WakePage>,
     seen: Cell<u32>,
 }
 
-impl ReportEar {
+impl ReportListener {
     pub(super) fn new(page: &Arc<WakePage>) -> Self {
         Self { page: page.clone(), seen: Cell::new(page.0.word(REPORTS).load(SeqCst)) }
     }
@@ -155,8 +155,8 @@ mod tests {
 
     const LONG: Duration = Duration::from_secs(60);
 
-    fn page() -> (Place, Arc<WakePage>, Arc<WakePage>) {
-        let place = Place::create().unwrap();
+    fn page() -> (RuntimeDir, Arc<WakePage>, Arc<WakePage>) {
+        let place = RuntimeDir::create().unwrap();
         let ours = Arc::new(WakePage::new(&place, Role::Create).unwrap());
         let theirs = Arc::new(WakePage::new(&place, Role::Open).unwrap());
         (place, ours, theirs)
@@ -165,28 +165,28 @@ mod tests {
     #[test]
     fn a_ring_between_looking_and_waiting_is_not_lost() {
         let (place, ours, theirs) = page();
-        let (bell, ear) = (TickBell::new(&ours), TickEar::new(&theirs));
-        ear.look();
-        bell.ring();
-        ear.wait(LONG);
-        let (bell, ear) = (ReportBell::new(&theirs), ReportEar::new(&ours));
-        ear.look();
-        bell.ring();
-        bell.ring();
-        ear.wait(2, LONG);
+        let (notifier, listener) = (TickNotifier::new(&ours), TickListener::new(&theirs));
+        listener.look();
+        notifier.ring();
+        listener.wait(LONG);
+        let (notifier, listener) = (ReportNotifier::new(&theirs), ReportListener::new(&ours));
+        listener.look();
+        notifier.ring();
+        notifier.ring();
+        listener.wait(2, LONG);
         place.remove();
     }
 
     #[test]
     fn the_coordinator_sleeps_until_the_last_report_and_robots_until_the_tick() {
         let (place, ours, theirs) = page();
-        let (ear, ticks) = (ReportEar::new(&ours), TickBell::new(&ours));
+        let (listener, ticks) = (ReportListener::new(&ours), TickNotifier::new(&ours));
         for round in 0..200 {
-            ear.look();
-            ear.expect(3);
+            listener.look();
+            listener.expect(3);
             thread::scope(|scope| {
                 for _ in 0..3 {
-                    let robot = (TickEar::new(&theirs), ReportBell::new(&theirs));
+                    let robot = (TickListener::new(&theirs), ReportNotifier::new(&theirs));
                     robot.0.look();
                     scope.spawn(move || {
                         robot.0.wait(LONG);
@@ -194,7 +194,7 @@ mod tests {
                     });
                 }
                 ticks.ring();
-                ear.wait(3, LONG);
+                listener.wait(3, LONG);
                 assert_eq!(ours.0.word(REPORTS).load(SeqCst), 3 * (round + 1));
             });
         }
@@ -204,10 +204,10 @@ mod tests {
     #[test]
     fn a_wait_has_an_end() {
         let (place, ours, _) = page();
-        let (robot, coordinator) = (TickEar::new(&ours), ReportEar::new(&ours));
+        let (robot, coordinator) = (TickListener::new(&ours), ReportListener::new(&ours));
         robot.look();
         robot.wait(Duration::from_millis(2));
-        ReportBell::new(&ours).ring();
+        ReportNotifier::new(&ours).ring();
         coordinator.look();
         coordinator.wait(1, Duration::from_millis(2));
         place.remove();

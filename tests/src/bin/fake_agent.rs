@@ -7,8 +7,8 @@ use shared::stop::StopFlag;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use vodca::Position;
-use vodca::hearing::Hearing;
 use vodca::horizon::Horizon;
+use vodca::neighbour_estimates::NeighbourEstimates;
 use vodca::prediction::Prediction;
 use vodca::step::{Level, Status, Step};
 
@@ -39,7 +39,7 @@ impl Drive for Straight {
         self.position
     }
 
-    fn step(&mut self, tick: u64, horizon: Horizon, _: &Hearing) -> Step {
+    fn step(&mut self, tick: u64, horizon: Horizon, _: &NeighbourEstimates) -> Step {
         if let Some((kind, at)) = &self.fault
             && *at == tick
         {
@@ -58,7 +58,7 @@ impl Drive for Straight {
             rows: 0,
             level: Level::Baseline,
             status: Status::Solved,
-            shielded: false,
+            filtered: false,
             plan: Prediction::from_states(&[position, self.position], self.set_point),
             detect_ns: 0,
             solve_ns: 0,

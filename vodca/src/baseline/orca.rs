@@ -154,7 +154,7 @@ impl Controller for OrcaController {
             rows,
             level: Level::Baseline,
             status: Status::Solved,
-            shielded: false,
+            filtered: false,
             detect_ns: 0,
             solve_ns: 0,
         }

@@ -6,7 +6,7 @@ use crate::prediction::Prediction;
 
 /// What a hazard is expected to do.
 #[derive(Clone, Copy, Debug)]
-pub enum Course<'a> {
+pub enum PredictedMotion<'a> {
     /// A neighbour follows its plan x^_j[l|k-1] as far as it reaches. A plan that is `age` ticks older
     /// than k - 1 is shifted: the neighbour is expected to stay where it ends.
     Plan {
@@ -33,7 +33,7 @@ pub enum Course<'a> {
 #[derive(Clone, Copy, Debug)]
 pub struct Hazard<'a> {
     /// Where it will be.
-    pub course: Course<'a>,
+    pub course: PredictedMotion<'a>,
     /// Separation owed to it, m (r_min plus radii beyond r_min / 2 plus clearance).
     pub separation: f64,
 }
@@ -42,12 +42,12 @@ impl Hazard<'_> {
     /// Where the hazard is at prediction step `step` of the plans of tick k - 1; `None` beyond its plan.
     pub fn at(&self, step: usize) -> Option<Position> {
         match self.course {
-            Course::Plan { plan, age } => {
+            PredictedMotion::Plan { plan, age } => {
                 let last = plan.horizon().steps();
                 (step <= last).then(|| plan.state(step.saturating_add(age).min(last)))
             }
-            Course::Wish { from, to, stride } => Some(toward(from, to, stride * step as f64)),
-            Course::Still(position) => Some(position),
+            PredictedMotion::Wish { from, to, stride } => Some(toward(from, to, stride * step as f64)),
+            PredictedMotion::Still(position) => Some(position),
         }
     }
 }
@@ -96,13 +96,18 @@ mod tests {
     #[test]
     fn only_steps_that_both_predict_are_compared() {
         let (own, other) = (line(0.0, 0.3, 20), line(6.0, -0.3, 20));
-        let hazard = Hazard { course: Course::Plan { plan: &other, age: 0 }, separation: 1.5 };
+        let hazard = Hazard { course: PredictedMotion::Plan { plan: &other, age: 0 }, separation: 1.5 };
         let conflict = first_conflict(&own, &hazard, 1, 49).unwrap();
         assert_eq!(conflict.step, 8);
         assert!((conflict.distance - 1.2).abs() < 1e-12);
         let short = line(6.0, -0.3, 7);
         assert_eq!(
-            first_conflict(&own, &Hazard { course: Course::Plan { plan: &short, age: 0 }, separation: 1.5 }, 1, 49),
+            first_conflict(
+                &own,
+                &Hazard { course: PredictedMotion::Plan { plan: &short, age: 0 }, separation: 1.5 },
+                1,
+                49
+            ),
             None
         );
         assert_eq!(first_conflict(&line(0.0, 0.3, 7), &hazard, 1, 49), None);
@@ -112,7 +117,7 @@ mod tests {
     #[test]
     fn a_late_plan_is_shifted_and_ends_where_it_ended() {
         let plan = line(0.0, 1.0, 3);
-        let late = |step| Hazard { course: Course::Plan { plan: &plan, age: 2 }, separation: 1.0 }.at(step);
+        let late = |step| Hazard { course: PredictedMotion::Plan { plan: &plan, age: 2 }, separation: 1.0 }.at(step);
         assert_eq!(late(1), Some(Position::new(3.0, 0.0)));
         assert_eq!(late(3), Some(Position::new(3.0, 0.0)));
         assert_eq!(late(4), None);
@@ -120,14 +125,14 @@ mod tests {
 
     #[test]
     fn the_separation_itself_is_no_conflict() {
-        let still = Hazard { course: Course::Still(Position::new(0.0, 1.5)), separation: 1.5 };
+        let still = Hazard { course: PredictedMotion::Still(Position::new(0.0, 1.5)), separation: 1.5 };
         assert_eq!(first_conflict(&line(0.0, 0.0, 3), &still, 1, 3), None);
     }
 
     #[test]
     fn a_wish_ends_at_the_set_point() {
         let (from, to) = (Position::zeros(), Position::new(1.0, -0.5));
-        let wish = Hazard { course: Course::Wish { from, to, stride: 0.3 }, separation: 1.0 };
+        let wish = Hazard { course: PredictedMotion::Wish { from, to, stride: 0.3 }, separation: 1.0 };
         assert!((wish.at(1).unwrap() - Position::new(0.3, -0.15)).norm() < 1e-15);
         assert_eq!(wish.at(4), Some(to));
     }

@@ -7,4 +7,4 @@ pub mod memory;
 pub mod rows;
 pub mod traffic;
 
-pub use detection::{Conflict, Course, Hazard};
+pub use detection::{Conflict, Hazard, PredictedMotion};

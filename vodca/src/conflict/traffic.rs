@@ -12,7 +12,7 @@ const TURNS: usize = 12;
 
 /// A straight walk: the motion expected of a robot that meets nobody (ARCHITECTURE, rules 3 and 8).
 #[derive(Clone, Copy, Debug)]
-pub struct Walk {
+pub struct StraightMotion {
     /// Present position, m.
     pub from: Position,
     /// Set-point, m.
@@ -32,7 +32,7 @@ struct Straight {
 
 impl Straight {
     /// `stride` is the largest move per tick and axis, m.
-    fn new(aim: &Aim, walk: Walk, stride: f64) -> Self {
+    fn new(aim: &Aim, walk: StraightMotion, stride: f64) -> Self {
         let way = walk.to - walk.from;
         Self { from: walk.from, way, fade: aim.fade(way.norm()), ticks: way.amax() / stride }
     }
@@ -68,14 +68,14 @@ impl Traffic {
     }
 
     /// One more robot that wishes to walk and is owed `separation`, m.
-    pub fn add(&mut self, walk: Walk, separation: f64) {
+    pub fn add(&mut self, walk: StraightMotion, separation: f64) {
         self.others.push((Straight::new(&self.aim, walk, self.stride), separation));
     }
 
     /// The right turn, rad, that a robot wishing to walk `own` should take: the one with the fewest
     /// meetings plus `aim.price` meetings per radian, if everybody took it. 0 when a straight walk
     /// meets nobody, at least `aim.angle` when it does.
-    pub fn turn(&self, own: Walk) -> f64 {
+    pub fn turn(&self, own: StraightMotion) -> f64 {
         let own = Straight::new(&self.aim, own, self.stride);
         let straight = self.meetings(&own, 0.0, usize::MAX);
         if straight == 0 {
@@ -126,11 +126,11 @@ mod tests {
         Aim { angle: 0.1, most: 0.6, price: 3.0, look_ahead: 49, ..Params::safe().aim }
     }
 
-    fn walk(from: (f64, f64), to: (f64, f64)) -> Walk {
-        Walk { from: Position::new(from.0, from.1), to: Position::new(to.0, to.1) }
+    fn walk(from: (f64, f64), to: (f64, f64)) -> StraightMotion {
+        StraightMotion { from: Position::new(from.0, from.1), to: Position::new(to.0, to.1) }
     }
 
-    fn turn(aim: &Aim, own: Walk, others: &[Walk]) -> f64 {
+    fn turn(aim: &Aim, own: StraightMotion, others: &[StraightMotion]) -> f64 {
         let mut traffic = Traffic::with_capacity(others.len(), aim, STRIDE);
         others.iter().for_each(|other| traffic.add(*other, 1.5));
         traffic.turn(own)
@@ -163,7 +163,7 @@ mod tests {
     fn a_ring_turns_into_a_roundabout() {
         // Sixteen walks through one point, as fast as each other: a circle on which 1.5 m are kept.
         let at = |k: usize| (10.0 * (TAU * k as f64 / 16.0).cos(), 10.0 * (TAU * k as f64 / 16.0).sin());
-        let walks: Vec<Walk> = (0..16).map(|k| walk(at(k), at(k + 8))).collect();
+        let walks: Vec<StraightMotion> = (0..16).map(|k| walk(at(k), at(k + 8))).collect();
         let free = Aim { price: 0.1, ..aim() };
         let angle = turn(&free, walks[0], &walks[1..]);
         let circle = 1.5 / (2.0 * (PI / 16.0).sin());
@@ -177,7 +177,7 @@ mod tests {
         fn a_turn_is_in_bounds_and_costs_no_more_than_walking_straight(
             places in prop::collection::vec(((0.0..25.0, 0.0..25.0), (0.0..25.0, 0.0..25.0)), 2..20),
         ) {
-            let walks: Vec<Walk> = places.iter().map(|(from, to)| walk(*from, *to)).collect();
+            let walks: Vec<StraightMotion> = places.iter().map(|(from, to)| walk(*from, *to)).collect();
             let aim = Aim { angle: 0.0, ..aim() };
             let angle = turn(&aim, walks[0], &walks[1..]);
             prop_assert!((0.0..=aim.most).contains(&angle));

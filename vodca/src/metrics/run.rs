@@ -49,7 +49,7 @@ struct Tally {
     ticks_with_rows: u64,
     fallback_steps: u64,
     infeasible: u64,
-    shielded: u64,
+    filtered: u64,
 }
 
 impl RunMetrics {
@@ -76,7 +76,7 @@ impl RunMetrics {
                     ticks_with_rows: 0,
                     fallback_steps: 0,
                     infeasible: 0,
-                    shielded: 0,
+                    filtered: 0,
                 }
             })
             .collect();
@@ -117,7 +117,7 @@ impl RunMetrics {
             robot.ticks_with_rows += u64::from(step.rows > 0);
             robot.fallback_steps += u64::from(matches!(step.status, Status::Shifted | Status::Stopped));
             robot.infeasible += u64::from(matches!(step.status, Status::Relaxed | Status::Held));
-            robot.shielded += u64::from(step.shielded);
+            robot.filtered += u64::from(step.filtered);
             self.levels.count(step.level);
             self.statuses.count(step.status);
         }
@@ -210,7 +210,7 @@ impl RunMetrics {
                 ticks_with_rows: robot.ticks_with_rows,
                 fallback_steps: robot.fallback_steps,
                 infeasible: robot.infeasible,
-                shielded: robot.shielded,
+                filtered: robot.filtered,
             })
             .collect();
         let total = |figure: fn(&RobotSummary) -> u64| robots.iter().map(figure).sum::<u64>();
@@ -235,7 +235,7 @@ impl RunMetrics {
             infeasible: total(|robot| robot.infeasible),
             solver_levels: self.levels,
             statuses: self.statuses,
-            shielded: total(|robot| robot.shielded),
+            filtered: total(|robot| robot.filtered),
             robots,
         }
     }

@@ -22,7 +22,7 @@ fn step(from: Position, to: Position) -> Step {
         rows: 0,
         level: Level::ClosedForm,
         status: Status::Solved,
-        shielded: false,
+        filtered: false,
         plan: Prediction::from_states(&[from, to], to),
         detect_ns: 0,
         solve_ns: 0,
@@ -106,11 +106,11 @@ fn rows_levels_and_statuses_are_counted_per_robot_and_in_all() {
     let outcomes =
         [(Level::Structured, Status::Relaxed), (Level::Fallback, Status::Shifted), (Level::Clarabel, Status::Held)];
     for (tick, (level, status)) in outcomes.into_iter().enumerate() {
-        let busy = Step { rows: tick as u32, level, status, shielded: tick == 1, ..still(0.0) };
+        let busy = Step { rows: tick as u32, level, status, filtered: tick == 1, ..still(0.0) };
         metrics.observe(tick as u64, &[busy, still(5.0)]);
     }
     let summary = metrics.finish();
-    assert_eq!((summary.activations, summary.ticks_with_rows, summary.infeasible, summary.shielded), (3, 2, 2, 1));
+    assert_eq!((summary.activations, summary.ticks_with_rows, summary.infeasible, summary.filtered), (3, 2, 2, 1));
     assert_eq!((summary.robots[0].fallback_steps, summary.robots[1].fallback_steps), (1, 0));
     let levels = SolverLevels { closed_form: 3, structured: 1, clarabel: 1, fallback: 1, baseline: 0 };
     assert_eq!(summary.solver_levels, levels);

@@ -41,8 +41,9 @@ pub struct RunSummary {
     pub solver_levels: SolverLevels,
     /// (Robot, tick) pairs by outcome.
     pub statuses: Statuses,
-    /// (Robot, tick) pairs whose input the last check changed.
-    pub shielded: u64,
+    /// (Robot, tick) pairs whose input the safety filter changed.
+    #[serde(alias = "shielded")]
+    pub filtered: u64,
     /// One entry per robot, by number.
     pub robots: Vec<RobotSummary>,
 }
@@ -71,8 +72,9 @@ pub struct RobotSummary {
     pub fallback_steps: u64,
     /// Ticks whose hard rows were infeasible.
     pub infeasible: u64,
-    /// Ticks whose input the last check changed.
-    pub shielded: u64,
+    /// Ticks whose input the safety filter changed.
+    #[serde(alias = "shielded")]
+    pub filtered: u64,
 }
 
 /// Counts by [`Level`].

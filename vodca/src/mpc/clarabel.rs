@@ -5,7 +5,7 @@
 //! entries, a collision row two (and its slack).
 
 use super::polish;
-use super::problem::{Effort, Plan, Problem, QpSolver, SolveError};
+use super::problem::{Effort, Problem, QpSolver, Solution, SolveError};
 use crate::Input;
 use ::clarabel::algebra::CscMatrix;
 use ::clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus, SupportedConeT};
@@ -61,7 +61,7 @@ impl Clarabel {
 }
 
 impl QpSolver for Clarabel {
-    fn solve(&mut self, problem: &Problem<'_>, plan: &mut Plan) -> Result<Effort, SolveError> {
+    fn solve(&mut self, problem: &Problem<'_>, plan: &mut Solution) -> Result<Effort, SolveError> {
         let gave_up = |iterations| Err(SolveError::GaveUp { iterations });
         if !problem.is_well_posed() {
             return gave_up(0);
@@ -208,7 +208,7 @@ mod tests {
     #[test]
     fn answers_are_exact_with_polish_and_rough_without() {
         let sample = sample(Family::Safe);
-        let (mut exact, mut rough) = (Plan::default(), Plan::default());
+        let (mut exact, mut rough) = (Solution::default(), Solution::default());
         let mut solver = Clarabel::run_time();
         solver.solve(&sample.problem(), &mut exact).unwrap();
         assert!(kkt::residual(&sample.problem(), &exact, solver.multipliers()).largest() < 1e-11);
@@ -218,7 +218,7 @@ mod tests {
 
     #[test]
     fn an_infeasible_problem_is_named_so() {
-        let outcome = Clarabel::run_time().solve(&sample(Family::Opposed).problem(), &mut Plan::default());
+        let outcome = Clarabel::run_time().solve(&sample(Family::Opposed).problem(), &mut Solution::default());
         assert_eq!(outcome, Err(SolveError::Infeasible));
     }
 
@@ -226,7 +226,7 @@ mod tests {
     fn an_ill_posed_problem_is_given_up() {
         let mut sample = sample(Family::Soft);
         sample.rows[0].normal.x = f64::NAN;
-        let outcome = Clarabel::run_time().solve(&sample.problem(), &mut Plan::default());
+        let outcome = Clarabel::run_time().solve(&sample.problem(), &mut Solution::default());
         assert_eq!(outcome, Err(SolveError::GaveUp { iterations: 0 }));
     }
 }

@@ -6,7 +6,7 @@
 //! scalar integrator drawn to one point shrink monotonically: once free, never saturated again.
 //! Feasible references are their own optimum: their cost is zero.
 
-use super::problem::{Plan, Problem, TargetKind};
+use super::problem::{Problem, Solution, TargetKind};
 use crate::horizon::MAX_HORIZON;
 use crate::{Input, Position};
 
@@ -41,7 +41,7 @@ impl ClosedForm {
     /// Writes the optimum without rows to `plan` and the states it leads to, `x[l + 1]` at index
     /// `l`, to `states`. Returns whether they satisfy every row: then the plan solves the whole QP,
     /// hard or soft.
-    pub fn solve(&mut self, problem: &Problem<'_>, plan: &mut Plan, states: &mut [Position; MAX_HORIZON]) -> bool {
+    pub fn solve(&mut self, problem: &Problem<'_>, plan: &mut Solution, states: &mut [Position; MAX_HORIZON]) -> bool {
         if (self.sample_time, self.state_weight, self.input_weight)
             != (problem.sample_time, problem.state_weight, problem.input_weight)
         {
@@ -79,8 +79,8 @@ mod tests {
     use crate::mpc::sample::{Family, Sample};
     use crate::mpc::stacked::Stacked;
 
-    fn solved(problem: &Problem<'_>) -> (Plan, bool) {
-        let mut plan = Plan::default();
+    fn solved(problem: &Problem<'_>) -> (Solution, bool) {
+        let mut plan = Solution::default();
         let mut states = [Position::zeros(); MAX_HORIZON];
         let satisfied = ClosedForm::new(0.2, 5.0, 10.0).solve(problem, &mut plan, &mut states);
         (plan, satisfied)

@@ -1,7 +1,7 @@
 //! Compares what the ladder decides with Clarabel, QP by QP (`--check-solver`).
 
 use super::clarabel::Clarabel;
-use super::problem::{Plan, Problem, QpSolver, SolveError};
+use super::problem::{Problem, QpSolver, Solution, SolveError};
 
 /// What comparing found.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -30,19 +30,19 @@ impl Comparison {
 #[derive(Clone, Debug)]
 pub struct CrossCheck {
     clarabel: Clarabel,
-    plan: Plan,
+    plan: Solution,
     found: Comparison,
 }
 
 impl Default for CrossCheck {
     fn default() -> Self {
-        Self { clarabel: Clarabel::reference(), plan: Plan::default(), found: Comparison::default() }
+        Self { clarabel: Clarabel::reference(), plan: Solution::default(), found: Comparison::default() }
     }
 }
 
 impl CrossCheck {
     /// Compares `outcome` with Clarabel's: `Some` plan, or why there is none.
-    pub fn compare(&mut self, problem: &Problem<'_>, outcome: Result<&Plan, SolveError>) {
+    pub fn compare(&mut self, problem: &Problem<'_>, outcome: Result<&Solution, SolveError>) {
         self.found.problems += 1;
         let reference = self.clarabel.solve(problem, &mut self.plan);
         match (outcome, reference) {
@@ -71,8 +71,8 @@ mod tests {
     use crate::mpc::sample::{Family, Sample};
     use crate::mpc::structured::Structured;
 
-    fn solved(sample: &Sample) -> Plan {
-        let mut plan = Plan::default();
+    fn solved(sample: &Sample) -> Solution {
+        let mut plan = Solution::default();
         Structured::default().solve(&sample.problem(), &mut plan).unwrap();
         plan
     }
@@ -101,7 +101,7 @@ mod tests {
         check.compare(&infeasible.problem(), Err(SolveError::Infeasible));
         assert_eq!(check.found().verdicts_differ, 0);
         check.compare(&feasible.problem(), Err(SolveError::Infeasible));
-        check.compare(&infeasible.problem(), Ok(&Plan::default()));
+        check.compare(&infeasible.problem(), Ok(&Solution::default()));
         check.compare(&feasible.problem(), Err(SolveError::GaveUp { iterations: 1 }));
         assert_eq!(check.found().verdicts_differ, 3);
         let mut sum = check.found();

@@ -6,7 +6,7 @@
 //! `g[l] = 2W (u[l] - u_d[l]) + h p[l+1]`. A plan is optimal if and only if
 //! `u = clamp(u - g / 2W)` at every step and axis, and every row's gap fits its multiplier.
 
-use super::problem::{Plan, Problem, Row, SlackPrice};
+use super::problem::{Problem, Row, SlackPrice, Solution};
 use crate::horizon::MAX_HORIZON;
 use crate::{Input, Position};
 
@@ -28,7 +28,7 @@ impl Residual {
 }
 
 /// Residual of `plan` with one multiplier per row of `problem`, in the rows' order.
-pub fn residual(problem: &Problem<'_>, plan: &Plan, multipliers: &[f64]) -> Residual {
+pub fn residual(problem: &Problem<'_>, plan: &Solution, multipliers: &[f64]) -> Residual {
     let mut states = [Position::zeros(); MAX_HORIZON];
     plan.roll_out(problem, &mut states);
     let mut pull = [Input::zeros(); MAX_HORIZON];
@@ -85,8 +85,8 @@ mod tests {
     use crate::mpc::sample::{Family, Sample};
     use crate::mpc::structured::Structured;
 
-    fn optimum(sample: &Sample) -> (Plan, Vec<f64>) {
-        let (mut solver, mut plan) = (Structured::default(), Plan::default());
+    fn optimum(sample: &Sample) -> (Solution, Vec<f64>) {
+        let (mut solver, mut plan) = (Structured::default(), Solution::default());
         solver.solve(&sample.problem(), &mut plan).unwrap();
         (plan, solver.multipliers().to_vec())
     }

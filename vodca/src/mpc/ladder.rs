@@ -3,7 +3,7 @@
 use super::clarabel::Clarabel;
 use super::closed_form::ClosedForm;
 use super::cross_check::{Comparison, CrossCheck};
-use super::problem::{Plan, Problem, QpSolver, SolveError};
+use super::problem::{Problem, QpSolver, Solution, SolveError};
 use super::structured::Structured;
 use crate::Position;
 use crate::horizon::MAX_HORIZON;
@@ -59,7 +59,7 @@ impl Ladder {
 
     /// Writes the optimal inputs to `plan` and says which level found them. `Infeasible` and `GaveUp`
     /// are the verdict of the last level that was asked; `plan` then holds nothing of use.
-    pub fn solve(&mut self, problem: &Problem<'_>, plan: &mut Plan) -> Result<Level, SolveError> {
+    pub fn solve(&mut self, problem: &Problem<'_>, plan: &mut Solution) -> Result<Level, SolveError> {
         let outcome = self.climb(problem, plan);
         match outcome {
             Ok(Level::ClosedForm) => self.counts.closed_form += 1,
@@ -74,7 +74,7 @@ impl Ladder {
         outcome
     }
 
-    fn climb(&mut self, problem: &Problem<'_>, plan: &mut Plan) -> Result<Level, SolveError> {
+    fn climb(&mut self, problem: &Problem<'_>, plan: &mut Solution) -> Result<Level, SolveError> {
         if !problem.is_well_posed() {
             return Err(SolveError::GaveUp { iterations: 0 });
         }
@@ -116,7 +116,7 @@ mod tests {
     #[test]
     fn each_level_takes_what_the_one_before_leaves() {
         let mut ladder = Ladder::checked();
-        let mut plan = Plan::default();
+        let mut plan = Solution::default();
         assert_eq!(ladder.solve(&sample(Family::Hard, 0).problem(), &mut plan), Ok(Level::ClosedForm));
         assert_eq!(ladder.solve(&sample(Family::Safe, 3).problem(), &mut plan), Ok(Level::Structured));
         // Without a quadratic price the structured solver has no compliance to work with.
@@ -135,7 +135,7 @@ mod tests {
     #[test]
     fn numbers_that_are_none_are_refused_at_every_place() {
         let mut ladder = Ladder::default();
-        let mut plan = Plan::default();
+        let mut plan = Solution::default();
         let mut broken = sample(Family::Safe, 3);
         broken.rows[1].offset = f64::NAN;
         assert_eq!(ladder.solve(&broken.problem(), &mut plan), Err(SolveError::GaveUp { iterations: 0 }));
@@ -151,7 +151,7 @@ mod tests {
     #[test]
     fn weights_may_change_from_one_problem_to_the_next() {
         let sample = sample(Family::Safe, 3);
-        let (mut used, mut plan, mut fresh) = (Ladder::default(), Plan::default(), Plan::default());
+        let (mut used, mut plan, mut fresh) = (Ladder::default(), Solution::default(), Solution::default());
         for weight in [1.0, 10.0, 100.0] {
             let problem = Problem { input_weight: weight, ..sample.problem() };
             used.solve(&problem, &mut plan).unwrap();

@@ -6,7 +6,7 @@
 //! solver finished, and for tests.
 
 use super::kkt;
-use super::problem::{Plan, Problem};
+use super::problem::{Problem, Solution};
 use super::stacked::Stacked;
 use nalgebra::{Cholesky, DMatrix, DVector};
 
@@ -33,7 +33,7 @@ enum RowState {
 
 /// Replaces `plan` and `multipliers` (one per row) by the exact optimum and returns its KKT
 /// residual. `None`: no exact optimum was found near the given one, which then stays untouched.
-pub fn polish(problem: &Problem<'_>, plan: &mut Plan, multipliers: &mut [f64]) -> Option<kkt::Residual> {
+pub fn polish(problem: &Problem<'_>, plan: &mut Solution, multipliers: &mut [f64]) -> Option<kkt::Residual> {
     let dense = Stacked::new(problem);
     let size = 2 * problem.horizon.steps();
     let bound = problem.max_speed;
@@ -47,7 +47,7 @@ pub fn polish(problem: &Problem<'_>, plan: &mut Plan, multipliers: &mut [f64]) -
             break;
         }
     }
-    let mut exact = Plan::default();
+    let mut exact = Solution::default();
     for (l, input) in exact.inputs[..size / 2].iter_mut().enumerate() {
         *input = crate::Input::new(inputs[2 * l].clamp(-bound, bound), inputs[2 * l + 1].clamp(-bound, bound));
     }
@@ -222,7 +222,7 @@ mod tests {
                 let sample = Sample::new(family, Horizon::new(20).unwrap(), 4, 8, index);
                 let problem = sample.problem();
                 let mut solver = Clarabel::unpolished(1e-5);
-                let mut plan = Plan::default();
+                let mut plan = Solution::default();
                 if solver.solve(&problem, &mut plan).is_err() {
                     continue;
                 }
@@ -238,7 +238,7 @@ mod tests {
     #[test]
     fn a_plan_that_nothing_can_repair_stays_as_it_is() {
         let sample = Sample::new(Family::Opposed, Horizon::new(10).unwrap(), 1, 8, 0);
-        let mut plan = Plan::default();
+        let mut plan = Solution::default();
         plan.inputs[2].x = 0.25;
         let before = plan.clone();
         let mut multipliers = [3.0, 4.0];

@@ -97,18 +97,18 @@ pub enum TargetKind {
 
 /// A solver's answer: `inputs[..N]`.
 #[derive(Clone, Debug)]
-pub struct Plan {
+pub struct Solution {
     /// `u[l]` at index l, m/s; entries from N on are zero.
     pub inputs: [Input; MAX_HORIZON],
 }
 
-impl Default for Plan {
+impl Default for Solution {
     fn default() -> Self {
         Self { inputs: [Input::zeros(); MAX_HORIZON] }
     }
 }
 
-impl Plan {
+impl Solution {
     /// Puts `x[l + 1]` at index `l < N` of `states`, by the model from `problem.position`.
     pub fn roll_out(&self, problem: &Problem<'_>, states: &mut [Position; MAX_HORIZON]) {
         let mut state = problem.position;
@@ -171,5 +171,5 @@ pub enum SolveError {
 /// One way to solve a [`Problem`].
 pub trait QpSolver {
     /// Writes the optimal inputs to `plan`.
-    fn solve(&mut self, problem: &Problem<'_>, plan: &mut Plan) -> Result<Effort, SolveError>;
+    fn solve(&mut self, problem: &Problem<'_>, plan: &mut Solution) -> Result<Effort, SolveError>;
 }

@@ -5,7 +5,7 @@
 //! point of the row-free plan, within 60 degrees of the heading.
 
 use super::closed_form::ClosedForm;
-use super::problem::{Plan, Problem, Row, SlackPrice, Target, TargetKind};
+use super::problem::{Problem, Row, SlackPrice, Solution, Target, TargetKind};
 use crate::horizon::{Horizon, MAX_HORIZON};
 use crate::random::{self, Use};
 use crate::{Input, Position};
@@ -58,7 +58,7 @@ impl Sample {
         let target = if family == Family::Safe { straight(position, set_point) } else { constant(set_point) };
         let mut sample = Self { horizon, position, target, rows: Vec::new() };
         let mut states = [Position::zeros(); MAX_HORIZON];
-        ClosedForm::new(SAMPLE_TIME, 5.0, 10.0).solve(&sample.problem(), &mut Plan::default(), &mut states);
+        ClosedForm::new(SAMPLE_TIME, 5.0, 10.0).solve(&sample.problem(), &mut Solution::default(), &mut states);
         for number in 0..rows {
             let step = 1 + random::below(&mut draw.0, horizon.steps() as u64) as usize;
             let hard = match family {

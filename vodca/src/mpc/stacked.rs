@@ -71,19 +71,19 @@ impl Stacked {
 mod tests {
     use super::*;
     use crate::horizon::{Horizon, MAX_HORIZON};
-    use crate::mpc::problem::Plan;
+    use crate::mpc::problem::Solution;
     use crate::mpc::sample::{Family, Sample};
     use crate::{Input, Position};
 
-    fn example() -> (Sample, Plan) {
-        let mut plan = Plan::default();
+    fn example() -> (Sample, Solution) {
+        let mut plan = Solution::default();
         for (l, input) in plan.inputs[..12].iter_mut().enumerate() {
             *input = Input::new((l as f64).sin(), (l as f64 * 2.0).cos());
         }
         (Sample::new(Family::Safe, Horizon::new(12).unwrap(), 5, 2, 0), plan)
     }
 
-    fn stacked(plan: &Plan) -> DVector<f64> {
+    fn stacked(plan: &Solution) -> DVector<f64> {
         DVector::from_iterator(24, plan.inputs[..12].iter().flat_map(|u| [u.x, u.y]))
     }
 
@@ -115,7 +115,7 @@ mod tests {
         // Up to the constant, which cancels in a difference.
         let no_rows = Problem { rows: &[], ..problem };
         let quadratic = |u: &DVector<f64>| 0.5 * u.dot(&(&dense.hessian * u)) + dense.gradient.dot(u);
-        let still = Plan::default();
+        let still = Solution::default();
         let dense_difference = quadratic(&stacked(&plan)) - quadratic(&stacked(&still));
         let difference = plan.cost(&no_rows) - still.cost(&no_rows);
         assert!((dense_difference - difference).abs() < 1e-9 * difference.abs().max(1.0));

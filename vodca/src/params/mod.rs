@@ -273,7 +273,7 @@ pub struct GiveWay {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Cell {
-    /// Whether the rule and the last check are on.
+    /// Whether the rule and the safety filter are on.
     pub enabled: bool,
     /// r_s, m: separation kept by the cells.
     pub separation: f64,

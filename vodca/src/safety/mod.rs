@@ -1,7 +1,7 @@
 //! The separation that holds by construction (ARCHITECTURE, rules 5 and 6): cells that robots may not leave
-//! within a tick, and the last check after any solver outcome.
+//! within a tick, and the safety filter after any solver outcome.
 
 pub mod cell;
-pub mod last_check;
+pub mod filter;
 
 pub use cell::Cell;

@@ -1,6 +1,6 @@
 //! Which bounds and rows are active, and what a solution says about it.
 
-use super::super::problem::{Plan, Problem};
+use super::super::problem::{Problem, Solution};
 use super::chain::Bounds;
 use super::equality::Equality;
 use super::small_factor::MAX_ACTIVE;
@@ -73,7 +73,7 @@ impl ActiveSet {
     }
 
     /// Adds the bounds that the inputs of `plan` touch.
-    pub(super) fn touch_bounds(&mut self, problem: &Problem<'_>, plan: &Plan) {
+    pub(super) fn touch_bounds(&mut self, problem: &Problem<'_>, plan: &Solution) {
         for (bounds, input) in self.bounds.iter_mut().zip(&plan.inputs[..problem.horizon.steps()]) {
             for axis in 0..2 {
                 if input[axis].abs() >= problem.max_speed {

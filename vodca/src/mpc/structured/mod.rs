@@ -17,7 +17,7 @@ mod single_step;
 mod small_factor;
 
 use super::kkt;
-use super::problem::{Effort, Plan, Problem, QpSolver, SolveError, TargetKind};
+use super::problem::{Effort, Problem, QpSolver, Solution, SolveError, TargetKind};
 use crate::Input;
 use active::ActiveSet;
 use equality::{Budget, Equality};
@@ -68,7 +68,7 @@ impl Structured {
     }
 
     /// Leaves the optimum in `equality`.
-    fn run(&mut self, problem: &Problem<'_>, guess: &Plan, budget: &mut Budget) -> Result<(), SolveError> {
+    fn run(&mut self, problem: &Problem<'_>, guess: &Solution, budget: &mut Budget) -> Result<(), SolveError> {
         self.start(problem, guess, budget)?;
         let mut cost = self.equality.cost(problem, &self.accepted);
         let (mut failures, mut singles) = (0, 0);
@@ -100,7 +100,7 @@ impl Structured {
     }
 
     /// The first accepted set: the bounds that `guess` touches, less those with a wrong multiplier.
-    fn start(&mut self, problem: &Problem<'_>, guess: &Plan, budget: &mut Budget) -> Result<(), SolveError> {
+    fn start(&mut self, problem: &Problem<'_>, guess: &Solution, budget: &mut Budget) -> Result<(), SolveError> {
         self.equality.reset(problem);
         self.accepted.reset(problem);
         // A feasible reference lies on its bounds without being held there.
@@ -133,7 +133,7 @@ impl Structured {
 impl QpSolver for Structured {
     /// On entry `plan` may hold the optimum without rows, from which the solver starts; any other
     /// content costs time only. The iterations count systems of equations.
-    fn solve(&mut self, problem: &Problem<'_>, plan: &mut Plan) -> Result<Effort, SolveError> {
+    fn solve(&mut self, problem: &Problem<'_>, plan: &mut Solution) -> Result<Effort, SolveError> {
         let soft = problem.rows.iter().any(|row| !row.hard);
         let mut budget = Budget { spent: 0, limit: MAX_ITERATIONS };
         if !problem.is_well_posed() || (soft && problem.slack.quadratic <= 0.0) {

@@ -32,7 +32,7 @@ pub(crate) struct Channel {
     pub(crate) encoding: &'static str,
 }
 
-/// Place of `/layout` in [`channels`].
+/// RuntimeDir of `/layout` in [`channels`].
 pub(crate) const LAYOUT: usize = 0;
 const SCENE: usize = 1;
 const POSES: usize = 2;
@@ -91,7 +91,7 @@ fn team_values(scenario: &Scenario, tick: u64, steps: &[Step]) -> serde_json::Va
                 "x": step.position.x, "y": step.position.y, "ux": step.input.x, "uy": step.input.y,
                 "distance": (robot.set_point - step.position).norm(),
                 "horizon": step.horizon, "rows": step.rows,
-                "level": step.level.word(), "status": step.status.word(), "shielded": step.shielded,
+                "level": step.level.word(), "status": step.status.word(), "filtered": step.filtered,
             })
         })
         .collect();
@@ -118,7 +118,7 @@ fn team_schema() -> String {
                 "rows": integer("collision rows of the QP"),
                 "level": word("rung of the solver ladder that gave the plan"),
                 "status": word("how the plan came about"),
-                "shielded": { "type": "boolean", "description": "whether the last check changed the input" },
+                "filtered": { "type": "boolean", "description": "whether the safety filter changed the input" },
             }}},
         },
     })

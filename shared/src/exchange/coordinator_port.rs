@@ -3,14 +3,14 @@
 use super::Kind;
 use crate::messages::{Announcement, Plan, Report, kind, order};
 use crate::os;
-use crate::place::Place;
+use crate::runtime_dir::RuntimeDir;
 use crate::services::{Announcer, Reports, ServiceError, Services};
 use std::time::Duration;
 use vodca::horizon::Horizon;
 
 /// Announces ticks and collects reports.
 #[derive(Debug)]
-pub struct Hub {
+pub struct CoordinatorPort {
     announcer: Announcer,
     reports: Reports,
     kind: Kind,
@@ -21,9 +21,9 @@ pub struct Hub {
     _services: Services,
 }
 
-impl Hub {
+impl CoordinatorPort {
     /// Makes all services of a run.
-    pub fn create(kind: Kind, place: &Place, robots: usize, epoch: u64) -> Result<Self, ServiceError> {
+    pub fn create(kind: Kind, place: &RuntimeDir, robots: usize, epoch: u64) -> Result<Self, ServiceError> {
         let services = Services::create(place, robots, kind == Kind::Peer)?;
         let frame = if kind == Kind::Relay { robots } else { 0 };
         Ok(Self {

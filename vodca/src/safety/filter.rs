@@ -1,4 +1,4 @@
-//! The last check after ANY solver outcome (ARCHITECTURE, rule 6): a move that would leave the cell is
+//! The safety filter after ANY solver outcome (ARCHITECTURE, rule 6): a move that would leave the cell is
 //! replaced by the nearest one that does not.
 
 use super::cell::{Cell, CellRow};

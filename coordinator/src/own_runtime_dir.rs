@@ -1,12 +1,12 @@
 //! A place of shared files that goes with its owner.
 
-use shared::place::Place;
+use shared::runtime_dir::RuntimeDir;
 
 /// Deletes the shared files of its place when dropped.
 #[derive(Debug)]
-pub(crate) struct OwnPlace(pub(crate) Place);
+pub(crate) struct OwnRuntimeDir(pub(crate) RuntimeDir);
 
-impl Drop for OwnPlace {
+impl Drop for OwnRuntimeDir {
     fn drop(&mut self) {
         self.0.remove();
     }

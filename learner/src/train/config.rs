@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 /// A training.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub struct Plan {
+pub struct TrainingConfig {
     /// Scenario: built-in name, file, or family (`box:8:3:any`: every episode has a layout of its own).
     pub scenario: String,
     /// Parameter set of the robots.
@@ -46,7 +46,7 @@ pub struct Plan {
     pub settings: Settings,
 }
 
-impl Default for Plan {
+impl Default for TrainingConfig {
     fn default() -> Self {
         Self {
             scenario: "two_setpoint".into(),
@@ -72,7 +72,7 @@ impl Default for Plan {
 
 /// Why a plan cannot be used.
 #[derive(Debug, thiserror::Error)]
-pub enum PlanError {
+pub enum TrainingConfigError {
     /// The file.
     #[error("cannot read the training plan {}: {source}", path.display())]
     File {
@@ -94,21 +94,22 @@ pub enum PlanError {
     Settings(#[from] SettingsError),
 }
 
-impl Plan {
+impl TrainingConfig {
     /// Reads a plan.
-    pub fn read(path: &Path) -> Result<Self, PlanError> {
-        let text = std::fs::read_to_string(path).map_err(|source| PlanError::File { path: path.to_owned(), source })?;
+    pub fn read(path: &Path) -> Result<Self, TrainingConfigError> {
+        let text = std::fs::read_to_string(path)
+            .map_err(|source| TrainingConfigError::File { path: path.to_owned(), source })?;
         let place = path.display().to_string();
         let plan: Self = toml::from_str(&text)
-            .map_err(|error| PlanError::Content { place: place.clone(), reason: error.to_string() })?;
+            .map_err(|error| TrainingConfigError::Content { place: place.clone(), reason: error.to_string() })?;
         plan.validate(&place)?;
         Ok(plan)
     }
 
     /// The same plan after `KEY=VALUE`: a key of the plan, `reward.KEY`, or a key of the learner's settings.
-    pub fn with(&self, assignment: &str) -> Result<Self, PlanError> {
+    pub fn with(&self, assignment: &str) -> Result<Self, TrainingConfigError> {
         let place = format!("--learn {assignment}");
-        let refuse = |reason: String| PlanError::Content { place: place.clone(), reason };
+        let refuse = |reason: String| TrainingConfigError::Content { place: place.clone(), reason };
         let (key, value) = assignment.split_once('=').ok_or_else(|| refuse("write KEY=VALUE".into()))?;
         let key = key.trim();
         let mut table = toml::Table::try_from(self).map_err(|error| refuse(error.to_string()))?;
@@ -139,9 +140,9 @@ impl Plan {
         toml::to_string(self).unwrap_or_default()
     }
 
-    fn validate(&self, place: &str) -> Result<(), PlanError> {
+    fn validate(&self, place: &str) -> Result<(), TrainingConfigError> {
         let refuse = |key: &str, value: &dyn std::fmt::Display, allowed: &str| {
-            Err(PlanError::Content {
+            Err(TrainingConfigError::Content {
                 place: place.into(),
                 reason: format!("{key} = {value} is not allowed; {allowed}"),
             })
@@ -207,14 +208,14 @@ mod tests {
     fn a_plan_survives_its_file() {
         let place = tempfile::tempdir().unwrap();
         let path = place.path().join("train.toml");
-        let plan = Plan { set: vec!["vodca.rows=each".into()], ..Plan::default() };
+        let plan = TrainingConfig { set: vec!["vodca.rows=each".into()], ..TrainingConfig::default() };
         std::fs::write(&path, plan.to_toml()).unwrap();
-        assert_eq!(Plan::read(&path).unwrap(), plan);
+        assert_eq!(TrainingConfig::read(&path).unwrap(), plan);
     }
 
     #[test]
     fn one_key_changes_the_plan_the_reward_or_the_settings() {
-        let plan = Plan::default().with("scenario=ex14_d").unwrap().with("reward.variance=0").unwrap();
+        let plan = TrainingConfig::default().with("scenario=ex14_d").unwrap().with("reward.variance=0").unwrap();
         let plan = plan.with("batch=64").unwrap().with("settings.discount=0.9").unwrap();
         assert_eq!((plan.scenario.as_str(), plan.reward.variance, plan.settings.batch), ("ex14_d", 0.0, 64));
         assert_eq!(plan.settings.discount, 0.9);
@@ -222,7 +223,7 @@ mod tests {
 
     #[test]
     fn a_wrong_key_or_value_is_named() {
-        let message = |assignment: &str| Plan::default().with(assignment).unwrap_err().to_string();
+        let message = |assignment: &str| TrainingConfig::default().with(assignment).unwrap_err().to_string();
         assert!(message("round_episodes=0").contains("round_episodes = 0 is not allowed; 1..=1000000"));
         assert!(message("nothing=1").contains("nothing"), "{}", message("nothing=1"));
         assert!(message("reward.nothing=1").contains("nothing"));

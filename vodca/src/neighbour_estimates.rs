@@ -8,7 +8,7 @@ use crate::scenario::Scenario;
 
 /// What one robot has heard of all others.
 #[derive(Clone, Debug)]
-pub struct Hearing {
+pub struct NeighbourEstimates {
     listener: usize,
     seed: u64,
     disturbance: Disturbance,
@@ -17,7 +17,7 @@ pub struct Hearing {
     under_way: Vec<Option<(u64, Prediction)>>,
 }
 
-impl Hearing {
+impl NeighbourEstimates {
     /// What `listener` knows before tick 0: the starts of the scenario.
     pub fn new(listener: usize, scenario: &Scenario, disturbance: &Disturbance, seed: u64) -> Self {
         let robots = &scenario.robots;
@@ -80,9 +80,9 @@ mod tests {
     use super::*;
     use crate::Position;
 
-    fn hearing(disturbance: Disturbance) -> Hearing {
+    fn hearing(disturbance: Disturbance) -> NeighbourEstimates {
         let scenario = Scenario::resolve(Some("two_setpoint"), None).unwrap();
-        Hearing::new(0, &scenario, &disturbance, 1)
+        NeighbourEstimates::new(0, &scenario, &disturbance, 1)
     }
 
     fn plan(x: f64) -> Prediction {
@@ -106,8 +106,9 @@ mod tests {
     fn lost_messages_neither_hold_late_plans_up_nor_bring_old_ones_back() {
         for (plan_delay, plan_loss) in [(1, 0.0), (3, 0.0), (3, 0.4)] {
             let mut hearing = hearing(Disturbance { plan_delay, plan_loss, position_loss: 0.4, ..CALM });
-            let arrives =
-                |hearing: &Hearing, tick| !hearing.is_lost(0.4, tick, 1, 0) && !hearing.is_lost(plan_loss, tick, 1, 1);
+            let arrives = |hearing: &NeighbourEstimates, tick| {
+                !hearing.is_lost(0.4, tick, 1, 0) && !hearing.is_lost(plan_loss, tick, 1, 1)
+            };
             let (mut due, mut lost) = (None, 0);
             for tick in 0..500 {
                 hearing.hear(tick, 1, &plan(tick as f64));

@@ -19,7 +19,7 @@ const SHARED_MEMORY: &str = "/dev/shm";
 /// Where the shared files of one run live.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Place {
+pub struct RuntimeDir {
     /// Start of the names of the run's shared-memory files.
     pub prefix: String,
     /// Folder of its sockets and service descriptions; short, for socket paths end at 107 bytes.
@@ -29,14 +29,14 @@ pub struct Place {
 /// A place could not be made.
 #[derive(Debug, thiserror::Error)]
 #[error("cannot make the folder {} for the run's sockets: {source}; it must be writable for this user", path.display())]
-pub struct PlaceError {
+pub struct RuntimeDirError {
     /// The folder.
     pub path: PathBuf,
     /// What the system said.
     pub source: io::Error,
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for RuntimeDir {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{} and {SHARED_MEMORY}/{}*", self.root, self.prefix)
     }
@@ -47,15 +47,15 @@ fn base() -> PathBuf {
     PathBuf::from(format!("/tmp/vodca-{}", os::user_id()))
 }
 
-impl Place {
+impl RuntimeDir {
     /// Makes a place that belongs to this process.
-    pub fn create() -> Result<Self, PlaceError> {
+    pub fn create() -> Result<Self, RuntimeDirError> {
         let pid = std::process::id();
         let owner = format!("{pid:x}-{:x}", os::start_time(pid).unwrap_or_default());
         let base = base();
         let failed = |path: &Path| {
             let path = path.to_owned();
-            move |source| PlaceError { path, source }
+            move |source| RuntimeDirError { path, source }
         };
         fs::create_dir_all(&base).map_err(failed(&base))?;
         // One process may run several teams, one after the other or (in tests) at once.
@@ -133,7 +133,7 @@ mod tests {
 
     #[test]
     fn a_place_is_unique_and_leaves_nothing() {
-        let (first, second) = (Place::create().unwrap(), Place::create().unwrap());
+        let (first, second) = (RuntimeDir::create().unwrap(), RuntimeDir::create().unwrap());
         assert_ne!(first, second);
         let shared = format!("{SHARED_MEMORY}/{}x.data", first.prefix);
         fs::write(&shared, "x").unwrap();

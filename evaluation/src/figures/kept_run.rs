@@ -28,7 +28,7 @@ pub(super) struct Setting {
 }
 
 /// A run, tick by tick.
-pub(super) struct Film {
+pub(super) struct KeptRun {
     pub(super) horizon: String,
     pub(super) scenario: Scenario,
     pub(super) params: Params,
@@ -38,18 +38,18 @@ pub(super) struct Film {
 
 impl Setting {
     /// Runs it with `horizon`, a SPEC of `--horizon`.
-    pub(super) fn run(&self, horizon: &str) -> Result<Film, Box<dyn Error + Send + Sync>> {
+    pub(super) fn run(&self, horizon: &str) -> Result<KeptRun, Box<dyn Error + Send + Sync>> {
         let (scenario, params) = self.set_up()?;
         let source =
             HorizonSource::new(&horizon.parse()?, scenario.robots.len(), scenario.seed, params.horizon.jitter)?;
         let mut ticks = Vec::new();
         let summary = run_whole(&scenario, &params, &source, |steps| ticks.push(steps.to_vec()));
-        Ok(Film { horizon: horizon.into(), scenario, params, ticks, summary })
+        Ok(KeptRun { horizon: horizon.into(), scenario, params, ticks, summary })
     }
 
     /// The run with variable horizons: those of its policy where that is there, otherwise
     /// [`Setting::best_random`].
-    pub(super) fn variable(&self, seeds: u64) -> Result<Film, Box<dyn Error + Send + Sync>> {
+    pub(super) fn variable(&self, seeds: u64) -> Result<KeptRun, Box<dyn Error + Send + Sync>> {
         let there = |name: &&str| Path::new(POLICIES).join(name).is_dir();
         let Some(name) = self.policy.filter(there) else { return self.best_random(seeds) };
         let (scenario, params) = self.set_up()?;
@@ -64,7 +64,7 @@ impl Setting {
             Err(Halt::Horizons(error)) => return Err(error.into()),
             Err(Halt::Team(never) | Halt::Observer(never)) => match never {},
         };
-        Ok(Film { horizon: format!("policy:{name}"), scenario, params, ticks, summary: metrics.finish() })
+        Ok(KeptRun { horizon: format!("policy:{name}"), scenario, params, ticks, summary: metrics.finish() })
     }
 
     fn set_up(&self) -> Result<(Scenario, Params), SetupError> {
@@ -73,7 +73,7 @@ impl Setting {
     }
 
     /// The shortest successful run of `seeds` with random horizons; the first one when none succeeds.
-    pub(super) fn best_random(&self, seeds: u64) -> Result<Film, Box<dyn Error + Send + Sync>> {
+    pub(super) fn best_random(&self, seeds: u64) -> Result<KeptRun, Box<dyn Error + Send + Sync>> {
         let mut best = self.run("random:0")?;
         for seed in 1..seeds {
             let next = self.run(&format!("random:{seed}"))?;
@@ -97,7 +97,7 @@ impl Setting {
     }
 }
 
-impl Film {
+impl KeptRun {
     /// Mean planning time of a robot in a tick, us.
     pub(super) fn mean_step_us(&self) -> f64 {
         let count = self.ticks.iter().flatten().count().max(1);
