@@ -123,7 +123,7 @@ pub const ENTRIES: &[Entry] = &[
     entry("vodca.turn", "rad", Between(-1.5, 1.5), "rule 2: theta", "normals turned left: robots pass on the right; smaller: shorter dense paths, more segregation stalls"),
     entry("vodca.turn_lasting", "rad", Between(-1.5, 1.5), "ours: rule 7", "vodca.turn after a long conflict: what small angles leave stuck, large ones resolve"),
     entry("vodca.lasting_memory", "-", Above(0.0, 1.0), "ours: rule 7", "share of the newest tick in the memory of how long a conflict has lasted; smaller: the turn grows later"),
-    entry("vodca.patience", "-", Between(0.0, 1.0), "ours: rule 9", "a robot whose conflict has lasted for this share of its memory lets everybody pass who has farther to go, and walks the shortest way round the obstacles; 1 is off: pockets beside obstacles and knots of parked robots are never left"),
+    entry("vodca.patience", "-", Between(0.0, 1.0), "ours: rule 9", "a robot whose conflict has lasted for this share of its memory lets everybody pass who has farther to go, wherever it is; 1 is off: some knots of robots near their set-points are never left"),
     entry("vodca.back_off", "-", Between(0.0, 1.0), "ours: rule 10", "a robot without patience whose conflict has lasted for this share walks off in a random direction now and then; 1 is off: robots that all wait for another one wait for ever; smaller: dense crowds dissolve later"),
     entry("vodca.softness", "-", OneOf(&["hard", "soft"]), "rule 2", "soft: rows have slack from the start, the QP is always feasible"),
     entry("vodca.infeasible", "-", OneOf(&["relax", "hold"]), "paper is silent", "hard rows without a solution: solve again with slack, or stand still (a trap)"),
