@@ -55,7 +55,7 @@ pub struct Summary {
     /// The figures that depend on the trajectory alone.
     #[serde(flatten)]
     pub run: RunSummary,
-    /// What robots that meet nobody need, for teams of up to [`BOUNDED`] robots.
+    /// What robots that meet nobody need, for teams of up to 16 robots.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lower_bound: Option<LowerBound>,
     /// Duration of a tick as the coordinator sees it.

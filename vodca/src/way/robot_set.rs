@@ -4,12 +4,12 @@
 /// sees whom, would take more memory and time than such a team has.
 pub(super) const MOST_STANDING: usize = 64;
 
-/// Robots by number, of teams of up to [`MOST_STANDING`].
+/// Robots by number, of teams of up to 64 (`MOST_STANDING`).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct RobotSet(u64);
 
 impl RobotSet {
-    /// Adds `robot`, below [`MOST_STANDING`].
+    /// Adds `robot`, below 64.
     pub fn add(&mut self, robot: usize) {
         self.0 |= 1 << robot;
     }
