@@ -24,7 +24,7 @@ fn robots(summary: &Summary) -> String {
         "activations",
         "fallback",
         "QP p50 us",
-        "p99 us",
+        "longest us",
     ]);
     for (number, (robot, solve)) in summary.run.robots.iter().zip(&summary.solve_latency).enumerate() {
         table.row([
@@ -36,7 +36,7 @@ fn robots(summary: &Summary) -> String {
             robot.activations.to_string(),
             robot.fallback_steps.to_string(),
             format!("{:.1}", solve.p50_us),
-            format!("{:.1}", solve.p99_us),
+            format!("{:.1}", solve.max_us),
         ]);
     }
     table.aligned()
@@ -89,17 +89,22 @@ fn figures(summary: &Summary, folder: &Path) -> String {
 }
 
 fn time_lines(summary: &Summary) -> Vec<(&'static str, String)> {
-    let both = |figures: &Percentiles| format!("p50 {:.0} us, p99 {:.0} us", figures.p50_us, figures.p99_us);
-    let mut lines = vec![("tick", both(&summary.tick_latency))];
+    let mut lines = vec![("tick", spread(&summary.tick_latency))];
     let part = |name: &&str| summary.tick_parts.get(*name).map(|figures| format!("{name} {:.1}", figures.p50_us));
     let parts: Vec<String> = PARTS.iter().filter_map(part).collect();
     if !parts.is_empty() {
         lines.push(("of a robot's", format!("{} us (p50 each)", parts.join(", "))));
     }
     if let Some(late) = &summary.lateness {
-        lines.push(("lateness", both(late)));
+        lines.push(("lateness", spread(late)));
     }
     lines
+}
+
+/// Percentiles with the number of durations that they rest on; p99 only where there are enough of them.
+fn spread(figures: &Percentiles) -> String {
+    let p99 = figures.p99().map_or(String::new(), |p99| format!("p99 {p99:.0} us, "));
+    format!("p50 {:.0} us, {p99}longest {:.0} us ({} times)", figures.p50_us, figures.max_us, figures.count)
 }
 
 fn policy_lines(policy: &PolicySummary) -> Vec<(&'static str, String)> {
@@ -109,7 +114,7 @@ fn policy_lines(policy: &PolicySummary) -> Vec<(&'static str, String)> {
     let (versions, speed) = (policy.versions.iter().map(version), &policy.inference);
     let mut lines = vec![
         ("policy", format!("{} ({})", policy.source.display(), versions.collect::<Vec<_>>().join("; "))),
-        ("inference", format!("p50 {:.0} us, p99 {:.0} us", speed.p50_us, speed.p99_us)),
+        ("inference", spread(speed)),
         (
             "answers",
             format!(

@@ -31,6 +31,31 @@ pub struct Percentiles {
     pub max_us: f64,
 }
 
+/// A percentile is told when at least this many durations lie beyond it: p99 from 1,000 on, p99.9 from 10,000.
+/// With fewer it would be little else than the longest under another name.
+const BEYOND: u64 = 10;
+
+impl Percentiles {
+    /// 90 % are no longer than this, us; none where too few durations lie beyond to tell.
+    pub fn p90(&self) -> Option<f64> {
+        self.told(10, self.p90_us)
+    }
+
+    /// 99 % are no longer than this, us; none where too few durations lie beyond to tell.
+    pub fn p99(&self) -> Option<f64> {
+        self.told(100, self.p99_us)
+    }
+
+    /// 99.9 % are no longer than this, us; none where too few durations lie beyond to tell.
+    pub fn p999(&self) -> Option<f64> {
+        self.told(1_000, self.p999_us)
+    }
+
+    fn told(&self, one_in: u64, value: f64) -> Option<f64> {
+        (self.count >= BEYOND * one_in).then_some(value)
+    }
+}
+
 impl Latency {
     /// An empty distribution.
     pub fn new() -> Self {
@@ -110,6 +135,13 @@ mod tests {
         assert!((figures.p90_us - 900.0).abs() <= 1.0 && (figures.p999_us - 999.0).abs() <= 2.0, "{figures:?}");
         assert!((figures.p99_us - 990.0).abs() <= 2.0, "{figures:?}");
         assert!((figures.max_us - 1000.0).abs() <= 2.0, "{figures:?}");
+    }
+
+    #[test]
+    fn a_percentile_is_told_when_ten_durations_lie_beyond_it() {
+        let of = |count| Percentiles { count, ..Percentiles::default() };
+        assert_eq!([of(99).p90(), of(999).p99(), of(9_999).p999()], [None; 3]);
+        assert_eq!([of(100).p90(), of(1_000).p99(), of(10_000).p999()], [Some(0.0); 3]);
     }
 
     #[test]

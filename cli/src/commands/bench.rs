@@ -10,7 +10,10 @@ use shared::messages::MAX_ROBOTS;
 use shared::stop::StopFlag;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
-use std::time::Duration;
+use std::time::{Duration, Instant};
+
+/// The load average forgets a build of two processes within this time.
+const SETTLING: Duration = Duration::from_secs(120);
 
 /// Arguments of `bench`.
 #[derive(Debug, clap::Args)]
@@ -25,8 +28,8 @@ Examples:
   ./run.sh bench --markdown results/latency
 Writes rows.csv, figures.csv, machine.toml, histograms.csv and plots (SVG). Every row rests on at least 20,000
 samples, at the pace of real time on 1,000; a percentile with fewer than ten samples beyond it is `-`. Read ratios
-first, and let nothing else run meanwhile: digits belong to the machine, and one whose load is above 0.5 before it
-begins is called busy. `all` takes about twenty minutes.")]
+first, and let nothing else run meanwhile: digits belong to the machine, and one whose load does not fall to 0.5
+within two minutes before it begins is called busy. `all` takes about twenty minutes.")]
 pub struct Args {
     /// What to measure
     #[arg(default_value = "all")]
@@ -67,7 +70,6 @@ pub fn run(args: Args) -> Ending {
     if let Some(folder) = &args.markdown {
         return print_markdown(folder);
     }
-    let load = LoadAverage::now();
     let stop = StopFlag::install().map_err(Failure::broken)?;
     let earlier = match &args.compare {
         Some(folder) => Earlier::read(folder).map_err(Failure::usage)?,
@@ -84,9 +86,7 @@ pub fn run(args: Args) -> Ending {
         tables_only: args.tables_only,
     };
     let expected = bench::estimate(&options);
-    if !options.quick {
-        announce(expected, &load);
-    }
+    let load = if options.quick { LoadAverage::now() } else { begin(expected, &stop) };
     let results = {
         let parts = Parts::expected(expected);
         let measured = bench::measure(&options, load, &stop, &parts);
@@ -100,16 +100,26 @@ pub fn run(args: Args) -> Ending {
     Ok(Outcome::Done)
 }
 
-/// Says how long it will take, and what to expect of a busy machine, before anything is measured.
-fn announce(expected: Duration, load: &LoadAverage) {
+/// Says how long it will take, lets the load of the build that came before settle, and returns what is left of it.
+fn begin(expected: Duration, stop: &StopFlag) -> LoadAverage {
     let seconds = expected.as_secs();
     let time = if seconds < 100 { format!("{seconds} s") } else { format!("{} minutes", (seconds + 30) / 60) };
     let mut stderr = std::io::stderr();
     // That nobody reads it is no reason not to measure.
     let _ = writeln!(stderr, "takes about {time} on two quiet cores");
+    let (began, mut load) = (Instant::now(), LoadAverage::now());
     if load.is_busy() {
-        let _ = writeln!(stderr, "the load is {} already: the tables will call this machine busy", load.text());
+        let _ =
+            writeln!(stderr, "the load is {}: waiting up to {} s for it to settle", load.text(), SETTLING.as_secs());
     }
+    while load.is_busy() && began.elapsed() < SETTLING && !stop.is_set() {
+        std::thread::sleep(Duration::from_millis(200));
+        load = LoadAverage::now();
+    }
+    if load.is_busy() {
+        let _ = writeln!(stderr, "the load is still {}: the tables will call this machine busy", load.text());
+    }
+    load
 }
 
 fn print(results: &Results, earlier: &Earlier) -> Result<(), PrintError> {

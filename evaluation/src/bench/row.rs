@@ -1,14 +1,10 @@
 //! What was measured: distributions and single figures.
 
 use super::load::LoadAverage;
-use coordinator::latency::{Latency, Percentiles};
+use coordinator::latency::Latency;
 
 /// Part of the rows that say where the time of a tick goes.
 pub const TICK_PARTS: &str = "tick parts";
-
-/// A percentile is told when at least this many samples lie beyond it: p99 from 1,000 samples on, p99.9 from
-/// 10,000. With fewer it would be little else than the maximum under another name.
-const BEYOND: u64 = 10;
 
 /// What a distribution is compared with.
 #[derive(Clone, Debug, PartialEq)]
@@ -87,20 +83,9 @@ impl Row {
 
     /// p50, p90, p99, p99.9 and the longest, us; `None`: too few samples to tell.
     pub fn told(&self) -> [Option<f64>; 5] {
-        told(&self.latency.percentiles())
+        let figures = self.latency.percentiles();
+        [Some(figures.p50_us), figures.p90(), figures.p99(), figures.p999(), Some(figures.max_us)]
     }
-}
-
-/// p50, p90, p99, p99.9 and the longest, us; `None` where too few samples lie beyond to tell.
-fn told(figures: &Percentiles) -> [Option<f64>; 5] {
-    let enough = |one_in: u64, value| (figures.count >= BEYOND * one_in).then_some(value);
-    [
-        Some(figures.p50_us),
-        enough(10, figures.p90_us),
-        enough(100, figures.p99_us),
-        enough(1_000, figures.p999_us),
-        Some(figures.max_us),
-    ]
 }
 
 impl Results {
