@@ -168,7 +168,7 @@ mod tests {
         let lines: Vec<&str> = text.lines().collect();
         assert!(lines[0].starts_with("robot  name  arrived  path m  straight m  activations"), "{text}");
         assert_eq!(lines[0].find("path m").map(|at| at + 6), lines[1].find("0.91").map(|at| at + 4), "{text}");
-        assert!(lines[1].ends_with("0.4     0.4"), "{text}");
+        assert!(lines[1].ends_with("0.4         0.4"), "{text}");
     }
 
     #[test]
