@@ -92,7 +92,7 @@ pub(super) fn overlap(a: &Closed, b: &Closed) -> bool {
 }
 
 /// Whether two straight lines cross.
-fn crosses(from: Position, to: Position, a: Position, b: Position) -> bool {
+pub(super) fn crosses(from: Position, to: Position, a: Position, b: Position) -> bool {
     let side = |from: Position, to: Position, at: Position| {
         let (way, off) = (to - from, at - from);
         way.x * off.y - way.y * off.x > 0.0

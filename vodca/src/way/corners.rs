@@ -34,8 +34,18 @@ pub(super) struct Corners {
     pub(super) at: Vec<Position>,
     /// How many of them, the first ones, are round obstacles.
     pub(super) fixed: usize,
-    /// By corner: the other corners in a straight line from it, with the set-points in between.
-    pub(super) seen: Vec<Vec<(usize, RobotSet)>>,
+    /// By corner: the other corners in a straight line from it.
+    pub(super) seen: Vec<Vec<Leg>>,
+}
+
+/// A straight way from one corner to another.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Leg {
+    pub(super) to: usize,
+    /// The set-points in between.
+    pub(super) between: RobotSet,
+    /// What it costs more than it is long, m.
+    pub(super) toll: f64,
 }
 
 impl Corners {
@@ -77,21 +87,26 @@ impl Corners {
             }
             at.extend(ground.gates(a).filter(|gate| ground.is_open(*gate)));
         }
-        let mut seen: Vec<Vec<(usize, RobotSet)>> = vec![Vec::new(); at.len()];
+        let mut seen: Vec<Vec<Leg>> = vec![Vec::new(); at.len()];
+        let leg = |from: usize, to: usize| Leg {
+            to,
+            between: between(&places, at[from], at[to]),
+            toll: ground.toll(at[from], at[to]),
+        };
         // A roadmap knows which of its corners a taut way joins.
         let known = ground.roadmap().map_or(0, |_| first_gate);
         if let Some(map) = ground.roadmap() {
             for (a, seen) in seen.iter_mut().enumerate().take(known) {
                 let others = map.seen_from(a).iter().map(|b| *b as usize);
-                seen.extend(others.map(|b| (b, between(&places, at[a], at[b]))));
+                seen.extend(others.map(|b| leg(a, b)));
             }
         }
         for a in known..at.len() {
             for b in 0..a {
                 if ground.is_free(at[a], at[b]) {
-                    let between = between(&places, at[a], at[b]);
-                    seen[a].push((b, between));
-                    seen[b].push((a, between));
+                    let there = leg(a, b);
+                    seen[a].push(there);
+                    seen[b].push(Leg { to: a, ..there });
                 }
             }
         }

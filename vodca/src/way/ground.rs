@@ -1,6 +1,6 @@
 //! What never moves, for the centres of robots of one size: discs, or pieces on a roadmap.
 
-use super::chains::{Overlap, overlap};
+use super::chains::{Overlap, crosses, overlap};
 use super::corners::{CUT, Closed, is_free};
 use crate::Position;
 use crate::geometry::Disc;
@@ -9,6 +9,8 @@ use std::sync::Arc;
 use world::route::Roadmap;
 use world::shape::Piece;
 
+/// What a way through a lane costs, in separations.
+const TOLL: f64 = 4.0;
 /// Nearer to closing a gap than this counts as leaving just enough, m.
 const ROUNDING: f64 = 1e-6;
 
@@ -18,6 +20,10 @@ pub(super) struct Ground {
     form: Form,
     /// Pairs of its parts between which the robot does not fit.
     overlaps: Vec<Overlap>,
+    /// Lines from part to part across lanes in which two such robots cannot pass each other.
+    lanes: Vec<(Position, Position)>,
+    /// What a way through a lane costs more than it is long, m.
+    toll: f64,
 }
 
 #[derive(Clone, Debug)]
@@ -39,11 +45,21 @@ impl Ground {
         let clearance = obstacles.clearance(separation);
         let map = Roadmap::with_places(obstacles.all().clone(), clearance, &round);
         let pieces = map.obstacles().pieces();
-        let pair = |(a, b): (usize, usize)| {
-            Some(Overlap { a, b, via: Some(common_place(&pieces[a], &pieces[b], map.clearance())?) })
-        };
-        let overlaps = pairs(pieces.len()).filter_map(pair).collect();
-        Self { form: Form::Pieces(Arc::new(map)), overlaps }
+        let (mut overlaps, mut lanes) = (Vec::new(), Vec::new());
+        for (a, b) in pairs(pieces.len()) {
+            match Gap::between(&pieces[a], &pieces[b], 4.0 * clearance) {
+                Some(gap) if gap.width < 2.0 * clearance - ROUNDING => {
+                    overlaps.push(Overlap { a, b, via: Some(gap.middle()) });
+                }
+                Some(gap)
+                    if gap.width < 4.0 * clearance - ROUNDING && map.is_open(gap.middle(), clearance * (1.0 - CUT)) =>
+                {
+                    lanes.push((gap.on_a, gap.on_b));
+                }
+                _ => {}
+            }
+        }
+        Self { form: Form::Pieces(Arc::new(map)), overlaps, lanes, toll: TOLL * separation }
     }
 
     /// The same where only discs stand.
@@ -52,7 +68,7 @@ impl Ground {
         let closed: Vec<Closed> = discs.iter().map(close).collect();
         let meet = |(a, b): &(usize, usize)| overlap(&closed[*a], &closed[*b]);
         let overlaps = pairs(closed.len()).filter(meet).map(|(a, b)| Overlap { a, b, via: None }).collect();
-        Self { form: Form::Discs(closed), overlaps }
+        Self { form: Form::Discs(closed), overlaps, lanes: Vec::new(), toll: 0.0 }
     }
 
     /// The discs, where there are only discs.
@@ -93,6 +109,13 @@ impl Ground {
             Form::Discs(closed) => closed.iter().all(|disc| (place - disc.centre).norm() >= disc.radius),
             Form::Pieces(map) => map.is_open(place, map.clearance()),
         }
+    }
+
+    /// What the straight way costs more than it is long, m: so much for each lane that it leads through. Two who meet
+    /// in a lane hold each other up until one has gone all the way back.
+    pub(super) fn toll(&self, from: Position, to: Position) -> f64 {
+        let through = |&&(a, b): &&(Position, Position)| crosses(from, to, a, b);
+        if self.lanes.is_empty() { 0.0 } else { self.toll * self.lanes.iter().filter(through).count() as f64 }
     }
 
     /// How much a robot on the straight way has to spare beside the nearest part that comes within `reach` (m) of it, m.
@@ -166,21 +189,35 @@ fn pairs(count: usize) -> impl Iterator<Item = (usize, usize)> {
     (0..count).flat_map(|a| (0..a).map(move |b| (a, b)))
 }
 
-/// A place within `clearance` (m) of both pieces; none where a robot that keeps that fits between them. Projections on
-/// the one and the other in turn end where they are nearest to each other (Cheney and Goldstein 1959).
-fn common_place(a: &Piece, b: &Piece, clearance: f64) -> Option<Position> {
-    if !a.bounds().grown(2.0 * clearance).meets(&b.bounds()) || a.distance_to(b) >= 2.0 * clearance - ROUNDING {
-        return None;
+/// The narrowest line between two pieces.
+struct Gap {
+    width: f64,
+    on_a: Position,
+    on_b: Position,
+}
+
+impl Gap {
+    /// None where it is wider than `most`, m. Projections on the one and the other in turn end where they are nearest to
+    /// each other (Cheney and Goldstein 1959), in a common place where they overlap.
+    fn between(a: &Piece, b: &Piece, most: f64) -> Option<Self> {
+        if !a.bounds().grown(most).meets(&b.bounds()) {
+            return None;
+        }
+        let width = a.distance_to(b);
+        let onto = |piece: &Piece, place: Position| {
+            let nearest = piece.nearest(place);
+            if nearest.distance > 0.0 { nearest.point } else { place }
+        };
+        let mut on_a = a.core()[0];
+        let mut on_b = onto(b, on_a);
+        for _ in 0..200 {
+            on_a = onto(a, on_b);
+            on_b = onto(b, on_a);
+        }
+        (width < most).then_some(Self { width, on_a, on_b })
     }
-    let onto = |piece: &Piece, place: Position| {
-        let nearest = piece.nearest(place);
-        if nearest.distance > 0.0 { nearest.point } else { place }
-    };
-    let mut on_a = a.core()[0];
-    let mut on_b = onto(b, on_a);
-    for _ in 0..200 {
-        on_a = onto(a, on_b);
-        on_b = onto(b, on_a);
+
+    fn middle(&self) -> Position {
+        (self.on_a + self.on_b) / 2.0
     }
-    Some((on_a + on_b) / 2.0)
 }

@@ -1,6 +1,6 @@
 //! The shortest ways of one robot round what stands, from anywhere to its set-point.
 
-use super::corners::{Closed, Corners, between};
+use super::corners::{Closed, Corners, Leg, between};
 use super::ground::Ground;
 use super::path::{Path, REACHED};
 use super::robot_set::RobotSet;
@@ -80,20 +80,21 @@ impl Route {
 
     /// Shortest ways from every corner while `standing` are in the way (Dijkstra 1959).
     fn walk_back(&self, standing: RobotSet, rest: &mut Rest) {
-        let Corners { at, fixed, seen, .. } = &*self.corners;
+        let Corners { ground, at, fixed, seen, .. } = &*self.corners;
         let Rest { left, next, open, .. } = rest;
         let used = if standing.is_empty() { *fixed } else { at.len() };
         let clear = |between: &Option<RobotSet>| between.is_some_and(|between| !between.meets(&standing));
-        let last = (self.set_point - self.entry).norm();
+        let cost = |from: Position, to: Position| (to - from).norm() + ground.toll(from, to);
+        let last = cost(self.entry, self.set_point);
         for (corner, (left, next)) in left.iter_mut().zip(next.iter_mut()).enumerate() {
             *next = Next::End;
             *left = if corner >= used {
                 f64::INFINITY
             } else if clear(&self.sees_end[corner]) {
-                (self.set_point - at[corner]).norm()
+                cost(at[corner], self.set_point)
             } else if clear(&self.sees_entry[corner]) {
                 *next = Next::Entry;
-                (self.entry - at[corner]).norm() + last
+                cost(at[corner], self.entry) + last
             } else {
                 f64::INFINITY
             };
@@ -105,11 +106,11 @@ impl Route {
             if left[corner].is_infinite() {
                 break;
             }
-            for (other, between) in &seen[corner] {
-                if *other < used && !between.meets(&standing) {
-                    let way = left[corner] + (at[*other] - at[corner]).norm();
-                    if way < left[*other] {
-                        (left[*other], next[*other]) = (way, Next::Corner(corner));
+            for Leg { to, between, toll } in &seen[corner] {
+                if *to < used && !between.meets(&standing) {
+                    let way = left[corner] + (at[*to] - at[corner]).norm() + toll;
+                    if way < left[*to] {
+                        (left[*to], next[*to]) = (way, Next::Corner(corner));
                     }
                 }
             }
@@ -135,11 +136,16 @@ impl Route {
 
     /// The shortest way from `from` while nobody stands.
     pub fn path(&self, from: Position) -> Path {
+        let ground = &self.corners.ground;
         let straight = Path::straight(from, self.set_point);
-        if self.corners.ground.is_free(from, self.set_point) {
-            return straight;
+        if !ground.is_free(from, self.set_point) {
+            return self.path_past(from, RobotSet::default(), &self.alone).unwrap_or(straight);
         }
-        self.path_past(from, RobotSet::default(), &self.alone).unwrap_or(straight)
+        let toll = ground.toll(from, self.set_point);
+        let straight = straight.of_length(straight.length + toll);
+        let round =
+            || self.path_past(from, RobotSet::default(), &self.alone).filter(|round| round.length < straight.length);
+        if toll > 0.0 { round().unwrap_or(straight) } else { straight }
     }
 
     /// The same round those of `standing` who are in the way; as if they were not there where no way leads
@@ -192,6 +198,7 @@ impl Route {
             let mut through = Path::straight(from, self.entry);
             through.push(self.set_point);
             through.length += (self.set_point - self.entry).norm();
+            through.length += ground.toll(from, self.entry) + ground.toll(self.entry, self.set_point);
             best = Some(through);
         }
         if rest.standing != standing {
@@ -225,8 +232,11 @@ impl Route {
                     && ground.is_free(from, *place)
                     && (standing.is_empty() || !between(places, from, *place).meets(&standing))
             };
-            if near > REACHED && way < shortest && free() {
-                (first, shortest) = (Some(corner), way);
+            if near > REACHED && way < shortest {
+                let way = way + ground.toll(from, *place);
+                if way < shortest && free() {
+                    (first, shortest) = (Some(corner), way);
+                }
             }
         }
         let mut corner = first?;
