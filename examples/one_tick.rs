@@ -11,7 +11,7 @@ use vodca::vodca_controller::VodcaController;
 fn main() -> Result<(), Box<dyn Error>> {
     // Fourteen robots that change sides; robot 0 is ours.
     let (scenario, params) = vodca::set_up("ex14_d", Profile::Safe, &[])?;
-    let layout = Arc::new(Layout::of(&scenario, params.model.min_separation));
+    let layout = Arc::new(Layout::of(&scenario, &params.model));
     let mut controller = VodcaController::new(0, &params, &layout);
 
     // Before the first tick everybody knows where the others start and where they want to go.

@@ -36,7 +36,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let folder = PathBuf::from(argument("--run").ok_or("--run FOLDER is missing")?);
     let robot = argument("--robot").ok_or("--robot NUMBER is missing")?.parse()?;
     run(Launch { run: &folder, robot, parent: None }, &stop, |setup, robot| {
-        let layout = Arc::new(Layout::of(&setup.scenario, setup.params.model.min_separation));
+        let layout = Arc::new(Layout::of(&setup.scenario, &setup.params.model));
         let wheels = Wheels { odometry: setup.scenario.robots[robot].start, hold: setup.params.model.sample_time };
         Robot::of(Box::new(wheels), Box::new(VodcaController::new(robot, &setup.params, &layout)))
     })?;

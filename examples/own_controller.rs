@@ -35,7 +35,7 @@ impl Controller for Straight {
 
 fn main() -> Result<(), Box<dyn Error>> {
     let (scenario, params) = vodca::set_up("four_cross", Profile::Safe, &[])?;
-    let layout = Arc::new(Layout::of(&scenario, params.model.min_separation));
+    let layout = Arc::new(Layout::of(&scenario, &params.model));
     let mut robots = vec![Robot::of(
         Box::new(SimulatedBody::new(0, scenario.robots[0].start, &params, 0)),
         Box::new(Straight(scenario.robots[0].set_point)),

@@ -107,7 +107,7 @@ impl Drive for Robot {
 /// The robot of a run with the body that the paper's model simulates: what the program `agent` runs.
 pub fn simulated(setup: &Setup, robot: usize) -> Robot {
     let Setup { team, scenario, params } = setup;
-    let layout = Arc::new(Layout::of(scenario, params.model.min_separation));
+    let layout = Arc::new(Layout::of(scenario, &params.model));
     Robot::new(robot, scenario, params, &layout, team.seed)
 }
 

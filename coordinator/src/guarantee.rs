@@ -34,7 +34,7 @@ pub fn judge(scenario: &Scenario, params: &Params, summary: &RunSummary) -> Guar
     // Before the first tick the metrics know the distances at the start.
     let at_start = RunMetrics::new(scenario, params).min_separation();
     let started_nearer = at_start < kept - START_TOLERANCE;
-    let promised = least_allowed(params, at_start);
+    let promised = least_allowed(scenario, params, at_start);
     if let Some(least) = summary.min_separation.filter(|least| *least < promised - SEPARATION_TOLERANCE) {
         let statement = format!(
             "BROKEN: somebody came to {least:.6} m, at least {promised:.6} m was promised; this is a fault of vodca: \
@@ -63,8 +63,8 @@ pub fn judge(scenario: &Scenario, params: &Params, summary: &RunSummary) -> Guar
 
 /// The least separation between samples that the promise allows, m. Under noise the promise is about the
 /// samples, and a chord between two points outside a circle may cut it: both robots of a pair move by at
-/// most sqrt(2) h max_speed, so the chord is no longer than twice that.
-fn least_allowed(params: &Params, at_start: f64) -> f64 {
+/// most sqrt(2) h v, v the largest speed, so the chord is no longer than twice that.
+fn least_allowed(scenario: &Scenario, params: &Params, at_start: f64) -> f64 {
     let kept = params.cell.separation.min(at_start);
     if params.disturbance.noise == 0.0 {
         return kept;
@@ -72,7 +72,8 @@ fn least_allowed(params: &Params, at_start: f64) -> f64 {
     if at_start < params.cell.separation - START_TOLERANCE {
         return f64::NEG_INFINITY; // of close starts nothing is promised under noise
     }
-    let half_chord = std::f64::consts::SQRT_2 * params.model.sample_time * params.model.max_speed;
+    let fastest = scenario.fastest(params.model.max_speed);
+    let half_chord = std::f64::consts::SQRT_2 * params.model.sample_time * fastest;
     (kept * kept - half_chord * half_chord).max(0.0).sqrt()
 }
 

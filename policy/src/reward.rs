@@ -5,8 +5,8 @@
 //! prints the label of R_p twice; the second one is R_c.
 
 use vodca::Position;
-use vodca::geometry::Disc;
 use vodca::horizon::Horizon;
+use vodca::obstacles::Obstacles;
 use vodca::params::Params;
 use vodca::scenario::Scenario;
 use vodca::separation::separation;
@@ -62,7 +62,7 @@ pub struct Judgement {
 pub struct Reward {
     set_points: Vec<Position>,
     extra: Vec<f64>,
-    obstacles: Vec<Disc>,
+    obstacles: Obstacles,
     tolerance: f64,
     collision_distance: f64,
     max_ticks: u64,
@@ -75,7 +75,7 @@ impl Reward {
         Self {
             set_points: scenario.robots.iter().map(|robot| robot.set_point).collect(),
             extra: scenario.robots.iter().map(|robot| robot.extra_radius(min_separation)).collect(),
-            obstacles: scenario.discs(min_separation),
+            obstacles: scenario.standing(min_separation),
             tolerance: params.episode.arrival_tolerance,
             collision_distance: params.episode.collision_factor * min_separation,
             max_ticks: scenario.max_ticks,
@@ -111,7 +111,13 @@ impl Reward {
         let own = motion(&steps[robot]);
         let near = |other, extra: f64| separation(own, other) - self.extra[robot] - extra < self.collision_distance;
         steps.iter().enumerate().any(|(j, step)| j != robot && near(motion(step), self.extra[j]))
-            || self.obstacles.iter().any(|obstacle| near((obstacle.centre, obstacle.centre), obstacle.extra))
+            || self.obstacles.discs().iter().any(|disc| near((disc.centre, disc.centre), disc.extra))
+            || self.hits_shape(robot, own)
+    }
+
+    fn hits_shape(&self, robot: usize, (from, to): (Position, Position)) -> bool {
+        let limit = self.collision_distance + self.extra[robot];
+        self.obstacles.separations(from, to, limit).any(|(_, separation)| separation < limit)
     }
 }
 

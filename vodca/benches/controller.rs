@@ -55,7 +55,7 @@ impl Moment {
         let most = last.iter().enumerate().max_by_key(|(_, step)| step.rows);
         let robot = most.map_or(0, |(robot, _)| robot);
         let (position, previous) = (last[robot].next_position, last[robot].plan.clone());
-        let layout = Arc::new(Layout::of(&scenario, params.model.min_separation));
+        let layout = Arc::new(Layout::of(&scenario, &params.model));
         Self { scenario, params, layout, robot, horizon, hearing, position, previous }
     }
 
@@ -69,7 +69,7 @@ impl Moment {
         let others = self.hearing.neighbours().iter().enumerate().filter(|(other, _)| *other != self.robot);
         for (other, neighbour) in others {
             if let Some((_, position)) = neighbour.present {
-                let present = Present { position, separation, moves: true };
+                let present = Present { position, separation, moves: Some(cell.stride) };
                 cell.keep_away(self.position, &present, self.params.cell.escape, self.robot < other);
             }
         }

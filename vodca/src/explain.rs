@@ -76,7 +76,7 @@ impl Explainer {
         let Step { horizon, position, .. } = now[robot];
         let view = View { tick: *tick, horizon, position, neighbours: &neighbours };
         let memory = &memories[robot];
-        let (mut standing, mut regards) = (Standing::with_capacity(0), Vec::new());
+        let (mut standing, mut regards) = (Standing::of(layout), Vec::new());
         regard_others(params, layout, robot, memory, &view, &mut standing, &mut regards);
         let hazards = hazards(params, layout, robot, &view, &regards);
         let (turn, min_separation) = (memory.turn(&params.vodca), params.model.min_separation);
@@ -98,7 +98,7 @@ mod tests {
     fn the_rows_of_every_tick_of_a_run_are_found_again() {
         for (scenario, profile) in [("ex14_d", Profile::Safe), ("ex14_b", Profile::Paper)] {
             let (scenario, params) = set_up(Some(scenario), None, profile, &[]).unwrap();
-            let layout = Arc::new(Layout::of(&scenario, params.model.min_separation));
+            let layout = Arc::new(Layout::of(&scenario, &params.model));
             let mut explainer = Explainer::new(Arc::new(params.clone()), layout);
             let mut team = Team::new(&scenario, &params, 0);
             let (mut rows, mut unknown) = (0, 0);

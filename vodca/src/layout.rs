@@ -2,19 +2,22 @@
 
 use crate::Position;
 use crate::geometry::Disc;
+use crate::obstacles::Obstacles;
+use crate::params::Model;
 use crate::scenario::Scenario;
-use crate::way::Filling;
-use crate::way::Route;
+use crate::way::{Filling, Route, Ways};
 
-/// Set-points, sizes and obstacles of a team.
+/// Set-points, sizes, speeds and obstacles of a team.
 #[derive(Clone, Debug)]
 pub struct Layout {
     /// Set-points by robot number, m.
     pub set_points: Vec<Position>,
     /// Radius of each robot beyond min_separation / 2, m.
     pub robot_extra: Vec<f64>,
-    /// Obstacles with their radius beyond min_separation / 2, m.
-    pub obstacles: Vec<Disc>,
+    /// Bound on each robot's input per axis, m/s.
+    pub max_speed: Vec<f64>,
+    /// What stands.
+    pub obstacles: Obstacles,
     /// Ways round the obstacles by robot number.
     pub routes: Vec<Route>,
     /// Ways to where a robot waits for its turn, by robot number.
@@ -27,11 +30,13 @@ pub struct Layout {
 }
 
 impl Layout {
-    /// The layout of a scenario; discs without a radius of their own have min_separation / 2.
-    pub fn of(scenario: &Scenario, min_separation: f64) -> Self {
+    /// The layout of a scenario; discs without a radius of their own have min_separation / 2, robots without a speed of
+    /// their own `model.max_speed`.
+    pub fn of(scenario: &Scenario, model: &Model) -> Self {
+        let min_separation = model.min_separation;
         let set_points: Vec<Position> = scenario.robots.iter().map(|robot| robot.set_point).collect();
         let robot_extra: Vec<f64> = scenario.robots.iter().map(|robot| robot.extra_radius(min_separation)).collect();
-        let obstacles = scenario.discs(min_separation);
+        let obstacles = scenario.standing(min_separation);
         let owed: Vec<f64> = robot_extra.iter().map(|extra| min_separation + extra).collect();
         let places: Vec<Disc> =
             set_points.iter().zip(&robot_extra).map(|(&centre, &extra)| Disc { centre, extra }).collect();
@@ -40,13 +45,15 @@ impl Layout {
                 let left = |at: Position, extra: f64| (at - set_points[robot]).norm() - owed[robot] - extra;
                 let others = (0..set_points.len()).filter(|&other| other != robot);
                 let others = others.map(|other| left(set_points[other], robot_extra[other]));
-                let all = others.chain(obstacles.iter().map(|disc| left(disc.centre, disc.extra)));
+                let near = obstacles.near(set_points[robot], 2.0 * owed[robot]);
+                let discs = near.map(|solid| solid.seen_from(set_points[robot]));
+                let all = others.chain(discs.map(|disc| left(disc.centre, disc.extra)));
                 all.fold(f64::INFINITY, f64::min).max(0.0)
             })
             .collect::<Vec<f64>>();
-        let filling = Filling::new(&places, &obstacles, min_separation);
-        let [routes, outside] = Route::of_team([&set_points, &filling.outside], &owed, &places, &obstacles);
-        Self { set_points, robot_extra, obstacles, routes, outside, filling, room }
+        let max_speed = (0..set_points.len()).map(|robot| scenario.max_speed(robot, model.max_speed)).collect();
+        let Ways { routes, outside, filling } = Ways::new(&places, &owed, &obstacles, min_separation);
+        Self { set_points, robot_extra, max_speed, obstacles, routes, outside, filling, room }
     }
 
     /// Whether `robot` cannot make room at its set-point: two that stand side by side, each with a third of a

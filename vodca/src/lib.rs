@@ -79,6 +79,7 @@ pub mod layout;
 pub mod metrics;
 pub mod mpc;
 pub mod neighbour_estimates;
+pub mod obstacles;
 pub mod params;
 pub mod play;
 pub mod prediction;

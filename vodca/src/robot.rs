@@ -107,7 +107,7 @@ mod tests {
     fn the_time_of_the_qp_is_a_part_of_the_time_of_the_step() {
         for (profile, has_qp) in [(Profile::Safe, true), (Profile::Orca, false)] {
             let (scenario, params) = set_up(Some("two_setpoint"), None, profile, &[]).unwrap();
-            let layout = Arc::new(Layout::of(&scenario, params.model.min_separation));
+            let layout = Arc::new(Layout::of(&scenario, &params.model));
             let hearing = NeighbourEstimates::new(0, &scenario, &params.disturbance, 0);
             let step = Robot::new(0, &scenario, &params, &layout, 0).step(0, Horizon::MAX, &hearing);
             assert_eq!((step.detect_ns > 0, step.solve_ns > 0), (has_qp, has_qp), "{profile}");
@@ -146,7 +146,7 @@ mod tests {
             }
         }
         let (scenario, params) = set_up(Some("two_setpoint"), None, Profile::Safe, &[]).unwrap();
-        let layout = Arc::new(Layout::of(&scenario, params.model.min_separation));
+        let layout = Arc::new(Layout::of(&scenario, &params.model));
         let controller = Box::new(VodcaController::new(0, &params, &layout));
         let mut robot = Robot::of(Box::new(Real(scenario.robots[0].start)), controller);
         let step = robot.step(0, Horizon::MAX, &NeighbourEstimates::new(0, &scenario, &params.disturbance, 0));

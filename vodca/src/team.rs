@@ -41,7 +41,7 @@ impl Team {
         params: &Params,
         seed: u64,
     ) -> Self {
-        let layout = Arc::new(Layout::of(scenario, params.model.min_separation));
+        let layout = Arc::new(Layout::of(scenario, &params.model));
         let robots = (0..scenario.robots.len()).map(|robot| build(robot, scenario, params, &layout, seed)).collect();
         Self::of(robots, scenario, params, seed)
     }

@@ -6,21 +6,23 @@ use crate::conflict::rows::collision_rows;
 use crate::conflict::traffic::{StraightMotion, Traffic};
 use crate::conflict::{Hazard, PredictedMotion};
 use crate::controller::{Controller, Decision, Neighbour, View};
-use crate::horizon::Horizon;
+use crate::horizon::{Horizon, MAX_HORIZON};
 use crate::layout::Layout;
 use crate::mpc::cross_check::Comparison;
 use crate::mpc::ladder::Ladder;
 use crate::mpc::problem::{Problem, Row, SlackPrice, Solution, SolveError, Target};
+use crate::obstacles::Solid;
 use crate::params::{Infeasible, Params, Reference};
 use crate::prediction::Prediction;
 use crate::reference;
-use crate::safety::cell::{Cell, Present};
+use crate::safety::cell::{Cell, Last, Present};
 use crate::safety::filter::{TOLERANCE, is_answer, nearest_safe};
 use crate::step::{Level, Status};
 use crate::way::Standing;
 use crate::way::right_of_way::{Regard, regard_others, way_on};
 use crate::way::{Path, Rest};
 use crate::{Input, Position};
+use std::f64::consts::SQRT_2;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -57,8 +59,8 @@ impl VodcaController {
     /// The controller of `robot`; everything a tick needs is allocated here.
     pub fn new(robot: usize, params: &Params, layout: &Arc<Layout>) -> Self {
         let robots = layout.set_points.len();
-        let hazards = robots + layout.obstacles.len();
-        let stride = params.model.sample_time * params.model.max_speed;
+        let hazards = robots + layout.obstacles.solids();
+        let stride = params.model.sample_time * layout.max_speed[robot];
         Self {
             robot,
             params: params.clone(),
@@ -70,8 +72,8 @@ impl VodcaController {
             plan: Solution::default(),
             previous: None,
             memory: ConflictMemory::default(),
-            traffic: Traffic::with_capacity(robots, &params.aim, stride),
-            standing: Standing::with_capacity(hazards),
+            traffic: Traffic::with_capacity(robots, &params.aim),
+            standing: Standing::of(layout),
             rests: [&layout.routes[robot], &layout.outside[robot]].map(|route| [Rest::of(route), Rest::of(route)]),
             way: Path::straight(layout.set_points[robot], layout.set_points[robot]),
             on: layout.set_points[robot],
@@ -99,7 +101,8 @@ impl VodcaController {
     fn look_ahead(&mut self, view: &View<'_>) -> f64 {
         let Self { params, layout, traffic, robot, .. } = self;
         let Params { model, aim, .. } = &*params;
-        let own = StraightMotion { from: view.position, to: self.on };
+        let stride = |robot: usize| model.sample_time * layout.max_speed[robot];
+        let own = StraightMotion { from: view.position, to: self.on, stride: stride(*robot) };
         if aim.look_ahead == 0 || (own.to - own.from).norm() < aim.fade_start {
             return 0.0;
         }
@@ -107,7 +110,7 @@ impl VodcaController {
         for (other, neighbour) in view.neighbours.iter().enumerate().filter(|(other, _)| *other != *robot) {
             if let Some((_, from)) = neighbour.present {
                 let separation = layout.owed(model.min_separation, *robot, other);
-                traffic.add(StraightMotion { from, to: neighbour.toward }, separation);
+                traffic.add(StraightMotion { from, to: neighbour.toward, stride: stride(other) }, separation);
             }
         }
         traffic.turn(own)
@@ -116,7 +119,7 @@ impl VodcaController {
     /// Rule 1: the reference, aimed by rule 4.
     fn aim(&mut self, view: &View<'_>) {
         let Params { model, mpc, aim, vodca, .. } = &self.params;
-        let (h, speed) = (model.sample_time, model.max_speed);
+        let (h, speed) = (model.sample_time, self.layout.max_speed[self.robot]);
         match mpc.reference {
             Reference::SetPoint => {
                 reference::set_point(&mut self.target, self.layout.set_points[self.robot], view.horizon);
@@ -149,18 +152,27 @@ impl VodcaController {
         let usual = params.cell.separation + 3.0 * noise;
         for (other, neighbour) in view.neighbours.iter().enumerate().filter(|(other, _)| other != robot) {
             let separation = layout.owed(usual, *robot, other);
+            let stride = params.model.sample_time * layout.max_speed[other];
             match neighbour.present {
                 Some((tick, position)) if tick == view.tick => {
-                    let present = Present { position, separation, moves: true };
+                    let present = Present { position, separation, moves: Some(stride) };
                     cell.keep_away(own, &present, escape, *robot < other);
                 }
-                Some((tick, last)) => cell.stay_near(own, last, separation, view.tick.saturating_sub(tick)),
+                Some((tick, last)) => {
+                    cell.stay_near(
+                        own,
+                        &Last { position: last, age: view.tick.saturating_sub(tick), stride },
+                        separation,
+                    );
+                }
                 None => cell.reach = 0.0,
             }
         }
-        for obstacle in &layout.obstacles {
-            let separation = layout.owed_to_obstacle(usual, *robot, obstacle);
-            let present = Present { position: obstacle.centre, separation, moves: false };
+        let reach = usual + layout.robot_extra[*robot] + SQRT_2 * cell.stride;
+        for obstacle in layout.obstacles.near(own, reach) {
+            let disc = obstacle.seen_from(own);
+            let separation = layout.owed_to_obstacle(usual, *robot, &disc);
+            let present = Present { position: disc.centre, separation, moves: None };
             cell.keep_away(own, &present, escape, true);
         }
         self.rows.extend(self.cell.as_rows(view.position));
@@ -194,7 +206,7 @@ impl VodcaController {
             rows: &self.rows,
             slack: SlackPrice { linear: vodca.slack_linear, quadratic: vodca.slack_quadratic },
             sample_time: model.sample_time,
-            max_speed: model.max_speed,
+            max_speed: self.layout.max_speed[self.robot],
             state_weight: mpc.state_weight,
             input_weight: mpc.input_weight,
         };
@@ -215,16 +227,16 @@ impl VodcaController {
     /// Rule 6, then the plan that everybody sees: bounded inputs rolled out by the model, never the
     /// solver's own states, so that state(1) is where the robot will be.
     fn publish(&mut self, view: &View<'_>) -> (Prediction, bool) {
-        let Params { model, .. } = &self.params;
+        let (model, speed) = (&self.params.model, self.layout.max_speed[self.robot]);
         let inputs = &mut self.plan.inputs[..view.horizon.steps()];
         for input in inputs.iter_mut() {
-            *input = input.map(|axis| bounded(axis, model.max_speed));
+            *input = input.map(|axis| bounded(axis, speed));
         }
         let mut filtered = false;
         if self.params.cell.enabled {
             let (step, changed) = nearest_safe(inputs[0] * model.sample_time, &self.cell);
             if changed {
-                inputs[0] = (step / model.sample_time).map(|axis| bounded(axis, model.max_speed));
+                inputs[0] = (step / model.sample_time).map(|axis| bounded(axis, speed));
                 filtered = true;
             }
             debug_assert!(is_answer(inputs[0] * model.sample_time, &self.cell, 2.0 * TOLERANCE));
@@ -283,7 +295,7 @@ pub fn hazards<'a>(
     let others = view.neighbours.iter().enumerate().filter(move |(other, _)| *other != robot);
     let neighbours = others.filter_map(move |(other, neighbour)| {
         let separation = layout.owed(usual, robot, other);
-        let wish = || wish(params, neighbour);
+        let wish = || wish(params.model.sample_time * layout.max_speed[other], neighbour);
         if regards[other] == Regard::Stays {
             return None;
         }
@@ -294,21 +306,25 @@ pub fn hazards<'a>(
         let age = (view.tick - 1).saturating_sub(*tick) as usize;
         Some(Hazard { course: PredictedMotion::Plan { plan, age }, separation })
     });
-    let obstacles = layout.obstacles.iter().map(move |obstacle| Hazard {
-        course: PredictedMotion::Still(obstacle.centre),
-        separation: layout.owed_to_obstacle(usual, robot, obstacle),
+    // No plan reaches farther.
+    let stride = params.model.sample_time * layout.max_speed[robot];
+    let reach = SQRT_2 * stride * MAX_HORIZON as f64 + usual + layout.robot_extra[robot];
+    let obstacles = layout.obstacles.near(view.position, reach).map(move |solid| match solid {
+        Solid::Disc(disc) => Hazard {
+            course: PredictedMotion::Still(disc.centre),
+            separation: layout.owed_to_obstacle(usual, robot, disc),
+        },
+        Solid::Piece(..) => {
+            Hazard { course: PredictedMotion::Shape(solid), separation: usual + layout.robot_extra[robot] }
+        }
     });
     neighbours.chain(obstacles)
 }
 
 /// Rule 3: a robot near its set-point, or without patience, lets those pass that still have farther to go
-/// than its own `way` (m), by keeping away from where they wish to walk. (A plan that already avoids a
-/// parked robot shows no conflict.)
-fn wish<'a>(params: &Params, neighbour: &Neighbour) -> Option<PredictedMotion<'a>> {
+/// than its own way, by keeping away from where they wish to walk, `stride` (m) in a tick. (A plan that already
+/// avoids a parked robot shows no conflict.)
+fn wish<'a>(stride: f64, neighbour: &Neighbour) -> Option<PredictedMotion<'a>> {
     let (_, from) = neighbour.present?;
-    Some(PredictedMotion::Wish {
-        from,
-        to: neighbour.toward,
-        stride: params.model.sample_time * params.model.max_speed,
-    })
+    Some(PredictedMotion::Wish { from, to: neighbour.toward, stride })
 }

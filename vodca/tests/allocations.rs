@@ -97,8 +97,13 @@ fn the_counter_counts() {
 
 #[test]
 fn a_steady_tick_of_all_robots_allocates_nothing() {
-    for (profile, scenario) in [(Profile::Safe, "ex14_d"), (Profile::Safe, "four_gate"), (Profile::Orca, "rand16o3_s0")]
-    {
+    for (profile, scenario) in [
+        (Profile::Safe, "ex14_d"),
+        (Profile::Safe, "four_gate"),
+        (Profile::Safe, "warehouse:12:1"),
+        (Profile::Orca, "rand16o3_s0"),
+        (Profile::Orca, "warehouse:12:1"),
+    ] {
         let (scenario, params) = set_up(Some(scenario), None, profile, &[]).unwrap();
         let mut team = Team::new(&scenario, &params, 0);
         let mut solved = 0;

@@ -30,11 +30,13 @@ fn crowd(seed: u64) -> Scenario {
         start,
         set_point: Position::new(draw(2.0 * width), draw(2.0 * width)),
         radius: None,
+        max_speed: None,
     });
     Scenario {
         name: format!("crowd{seed}"),
         robots: robots.collect(),
         obstacles: obstacles.iter().map(|&position| Obstacle { name: "o".into(), position, radius: None }).collect(),
+        shapes: Vec::new(),
         max_ticks: 40,
         seed,
         allow_close_start: false,

@@ -53,3 +53,9 @@ fn robots_wedged_between_each_other_come_apart() {
     let without = arrives("permute:16:5", Some(20), 5, &["vodca.back_off=1"]);
     assert!(!without, "shows nothing any more: take another one");
 }
+
+#[test]
+fn lanes_for_one_robot_are_left_to_those_who_need_them() {
+    // Without a toll on such lanes this one's robots met in them and had not arrived after 1,500 ticks.
+    assert!(arrives("warehouse:20:64", None, 64, &[]));
+}

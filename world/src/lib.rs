@@ -10,6 +10,7 @@ pub mod file;
 pub mod map;
 pub mod route;
 pub mod shape;
+pub mod shipped;
 
 /// A place or a displacement in the plane, m, world frame.
 pub type Position = nalgebra::Vector2<f64>;

@@ -1,12 +1,15 @@
-//! `scenario`: lists, checks and generates scenarios.
+//! `scenario`: lists, checks, draws and generates scenarios.
 
 use crate::exit::{Ending, Failure, Outcome};
 use crate::stdout;
 use clap::Subcommand;
 use std::path::PathBuf;
+use std::sync::Arc;
 use vodca::metrics::RunMetrics;
 use vodca::params::{Params, Profile};
 use vodca::scenario::{Scenario, names, set_up};
+use world::draw::{RobotMark, svg};
+use world::route::{Roadmap, Route};
 
 /// Arguments of `scenario`.
 #[derive(Debug, clap::Args)]
@@ -14,8 +17,12 @@ use vodca::scenario::{Scenario, names, set_up};
 Examples:
   ./run.sh scenario list
   ./run.sh scenario check my_layout.toml
+  ./run.sh scenario show my_layout.toml -o my_layout.svg
+  ./run.sh scenario show warehouse:20:1 -o warehouse.svg
   ./run.sh scenario generate box:16:3:7 --out my_box.toml
-Families: ring:N, box:N:OBSTACLES:SEED, exchange:N:SEED, segregate:GROUPSxSIZE:SEED.")]
+Families: ring:N, box:N:OBSTACLES:SEED, exchange:N:SEED, segregate:GROUPSxSIZE:SEED; tight places: park:N:SEED,
+tight_ring:N:SEED, permute:N:SEED, mixed:N:SEED; walls: door:N:WIDTH:SEED, pocket:N:SEED, corridor:N:SEED, forest:N:SEED,
+rooms:N:SEED, warehouse:N:SEED. What a file holds, obstacles and maps: scenarios/README.md.")]
 pub struct Args {
     #[command(subcommand)]
     action: Action,
@@ -30,6 +37,22 @@ enum Action {
         /// File, built-in name or family
         scenario: String,
         /// Parameter set to check distances with: safe, paper, orca or orca-rh
+        #[arg(long, default_value = "safe")]
+        profile: Profile,
+        /// Change a parameter (repeatable)
+        #[arg(long, value_name = "KEY=VALUE")]
+        set: Vec<String>,
+    },
+    /// Draw a scenario as SVG before anyone runs it: what stands, starts (filled), set-points (rings), shortest ways
+    #[command(after_help = "Example:\n  ./run.sh scenario show my_layout.toml -o my_layout.svg\n\
+        A robot without a way has a dashed line; why, is said at the end, and the exit code is 2.")]
+    Show {
+        /// File, built-in name or family
+        scenario: String,
+        /// The picture to write, over what is there; standard output when left out
+        #[arg(short, long, value_name = "FILE.svg")]
+        out: Option<PathBuf>,
+        /// Parameter set whose separation decides about ways: safe, paper, orca or orca-rh
         #[arg(long, default_value = "safe")]
         profile: Profile,
         /// Change a parameter (repeatable)
@@ -58,6 +81,7 @@ pub fn run(args: Args) -> Ending {
             let (scenario, params) = set_up(Some(&scenario), None, profile, &set).map_err(Failure::usage)?;
             stdout::line(describe(&scenario, &params))?;
         }
+        Action::Show { scenario, out, profile, set } => show(&scenario, out, profile, &set)?,
         Action::Generate { scenario, out } => generate(&scenario, out)?,
     }
     Ok(Outcome::Done)
@@ -78,7 +102,7 @@ fn describe(scenario: &Scenario, params: &Params) -> String {
         "{}: {} robots, {} obstacles, straight lines {:.1} m, at most {} ticks, {nearest}: usable",
         scenario.name,
         scenario.robots.len(),
-        scenario.obstacles.len(),
+        scenario.obstacle_count(),
         scenario.straight_line(),
         scenario.max_ticks
     )
@@ -86,10 +110,45 @@ fn describe(scenario: &Scenario, params: &Params) -> String {
 
 /// Why a generated scenario could not be written.
 #[derive(Debug, thiserror::Error)]
-#[error("cannot write {}: {source}; choose another file with --out", path.display())]
+#[error("cannot write {}: {source}; choose {next}", path.display())]
 struct WriteError {
     path: PathBuf,
     source: std::io::Error,
+    next: &'static str,
+}
+
+/// Draws whatever can be read; what is wrong with it comes after.
+fn show(spec: &str, out: Option<PathBuf>, profile: Profile, set: &[String]) -> Result<(), Failure> {
+    let scenario = Scenario::resolve(Some(spec), None).map_err(Failure::usage)?;
+    let params = Params::resolve(profile, &scenario.name, &scenario.params, set).map_err(Failure::usage)?;
+    let text = picture(&scenario, params.model.min_separation);
+    match out {
+        None => stdout::text(text)?,
+        Some(path) => std::fs::write(&path, text)
+            .map_err(|source| Failure::broken(WriteError { path, source, next: "another file with -o" }))?,
+    }
+    set_up(Some(spec), None, profile, set).map(|_| ()).map_err(Failure::usage)
+}
+
+/// The scenario with everybody's shortest way as if it were alone.
+fn picture(scenario: &Scenario, min_separation: f64) -> String {
+    let obstacles = scenario.standing(min_separation).all().clone();
+    let mut maps: Vec<Arc<Roadmap>> = Vec::new();
+    let robots: Vec<RobotMark> = (scenario.robots.iter())
+        .map(|robot| {
+            let radius = robot.radius.unwrap_or(min_separation / 2.0);
+            let known = maps.iter().find(|map| map.clearance() == radius).cloned();
+            let map = known.unwrap_or_else(|| {
+                let map = Arc::new(Roadmap::new(obstacles.clone(), radius));
+                maps.push(map.clone());
+                map
+            });
+            let way = Route::new(map, robot.set_point).map(|route| route.walk(robot.start, None).collect());
+            let way = way.unwrap_or_default();
+            RobotMark { name: robot.name.clone(), start: robot.start, set_point: robot.set_point, radius, way }
+        })
+        .collect();
+    svg(&scenario.name, &obstacles, &robots)
 }
 
 fn generate(spec: &str, out: Option<PathBuf>) -> Result<(), Failure> {
@@ -101,7 +160,7 @@ fn generate(spec: &str, out: Option<PathBuf>) -> Result<(), Failure> {
     // Never over a file that somebody may have edited.
     let written =
         std::fs::File::create_new(&path).and_then(|mut file| std::io::Write::write_all(&mut file, text.as_bytes()));
-    written.map_err(|source| Failure::broken(WriteError { path, source }))
+    written.map_err(|source| Failure::broken(WriteError { path, source, next: "another file with --out" }))
 }
 
 #[cfg(test)]
@@ -118,6 +177,15 @@ mod tests {
         assert!(describe(&scenario, &params).contains(" 1.200 m apart at the start, nearer than 1.5 m"));
         scenario.robots.truncate(1);
         assert!(describe(&scenario, &params).contains("nothing to meet"));
+    }
+
+    #[test]
+    fn a_picture_shows_what_stands_and_a_way_for_everybody() {
+        let scenario = Scenario::resolve(Some("warehouse:20:1"), None).unwrap();
+        let text = picture(&scenario, 1.5);
+        assert_eq!(text.matches("<circle").count(), 40);
+        // Nineteen regions, twenty ways, none of them dashed, and the scale.
+        assert_eq!((text.matches("<path").count(), text.matches("dasharray").count()), (40, 0));
     }
 
     #[test]

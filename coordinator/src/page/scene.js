@@ -66,25 +66,51 @@ class Scene {
   }
 
   drawObstacles() {
+    for (const shape of this.layout.shapes) this.drawShape(shape);
     const pen = this.pen;
-    for (const obstacle of this.layout.obstacles) {
-      const [x, y] = obstacle.at;
-      this.circle(x, y, obstacle.radius);
-      pen.save();
-      pen.fillStyle = themeColour("--grid");
-      pen.fill();
-      pen.strokeStyle = themeColour("--muted");
-      pen.stroke();
-      pen.clip();
-      pen.beginPath();
-      const r = obstacle.radius * this.scale, [cx, cy] = [this.toX(x), this.toY(y)];
-      for (let shift = -2 * r; shift < 2 * r; shift += 6) {
-        pen.moveTo(cx + shift - r, cy + r);
-        pen.lineTo(cx + shift + r, cy - r);
-      }
-      pen.stroke();
-      pen.restore();
+    pen.beginPath();
+    for (const { at: [x, y], radius } of this.layout.obstacles) {
+      const [left, middle, r] = [this.toX(x), this.toY(y), Math.max(1, radius * this.scale)];
+      pen.moveTo(left + r, middle);
+      pen.arc(left, middle, r, 0, 2 * Math.PI);
     }
+    this.hatch("nonzero");
+  }
+
+  // Polygons are filled; of walls, which have no inside, the chain is drawn as wide as they are thick.
+  drawShape(shape) {
+    const pen = this.pen;
+    pen.beginPath();
+    for (const ring of shape.rings) {
+      for (const [x, y] of ring) pen.lineTo(this.toX(x), this.toY(y));
+      pen.closePath();
+      pen.moveTo(this.toX(ring[0][0]), this.toY(ring[0][1]));
+    }
+    if (shape.radius === 0) return this.hatch("evenodd");
+    pen.save();
+    pen.lineJoin = pen.lineCap = "round";
+    pen.lineWidth = Math.max(1, 2 * shape.radius * this.scale);
+    pen.strokeStyle = themeColour("--muted");
+    pen.stroke();
+    pen.restore();
+  }
+
+  // Fills the path with hatching.
+  hatch(rule) {
+    const pen = this.pen;
+    pen.save();
+    pen.fillStyle = themeColour("--grid");
+    pen.fill(rule);
+    pen.strokeStyle = themeColour("--muted");
+    pen.stroke();
+    pen.clip(rule);
+    pen.beginPath();
+    for (let shift = -this.height; shift < this.width; shift += 6) {
+      pen.moveTo(shift, this.height);
+      pen.lineTo(shift + this.height, 0);
+    }
+    pen.stroke();
+    pen.restore();
   }
 
   drawSetPoint(i) {
@@ -201,6 +227,12 @@ function boundsOf(layout, positions) {
     add(x - r, y - r);
     add(x + r, y + r);
   });
+  for (const { rings, radius: r } of layout.shapes) {
+    for (const [x, y] of rings.flat()) {
+      add(x - r, y - r);
+      add(x + r, y + r);
+    }
+  }
   for (let n = 0; n < positions.length; n += 2) add(positions[n], positions[n + 1]);
   const least = all => all.reduce((a, b) => Math.min(a, b)), most = all => all.reduce((a, b) => Math.max(a, b));
   const margin = layout.minSeparation;

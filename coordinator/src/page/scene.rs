@@ -27,9 +27,17 @@ pub fn layout(scenario: &Scenario, params: &Params) -> Value {
             json!({ "name": obstacle.name, "at": point(obstacle.position), "radius": obstacle.radius.unwrap_or(half) })
         })
         .collect();
+    // What is no disc: closed chains of points, filled by the even-odd rule, and drawn so much wider on all sides.
+    let shapes: Vec<Value> = (scenario.shapes.iter())
+        .map(|shape| {
+            let rings: Vec<Vec<Value>> =
+                shape.rings().iter().map(|ring| ring.iter().map(|at| point(*at)).collect()).collect();
+            json!({ "name": shape.name(), "rings": rings, "radius": shape.radius() })
+        })
+        .collect();
     json!({
-        "scenario": scenario.name, "robots": robots, "obstacles": obstacles,
-        "maxTicks": scenario.max_ticks, "sampleTime": params.model.sample_time, "maxSpeed": params.model.max_speed,
+        "scenario": scenario.name, "robots": robots, "obstacles": obstacles, "shapes": shapes,
+        "maxTicks": scenario.max_ticks, "sampleTime": params.model.sample_time, "maxSpeed": scenario.fastest(params.model.max_speed),
         "minSeparation": params.model.min_separation,
         "collisionDistance": params.episode.collision_factor * params.model.min_separation,
     })

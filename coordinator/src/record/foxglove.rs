@@ -36,8 +36,22 @@ pub(super) struct SceneEntity {
     pub(super) cylinders: Vec<CylinderPrimitive>,
     #[prost(message, repeated, tag = "11")]
     pub(super) lines: Vec<LinePrimitive>,
+    #[prost(message, repeated, tag = "12")]
+    pub(super) triangles: Vec<TriangleListPrimitive>,
     #[prost(message, repeated, tag = "13")]
     pub(super) texts: Vec<TextPrimitive>,
+}
+
+/// `foxglove.TriangleListPrimitive`
+#[derive(Clone, PartialEq, Message)]
+pub(super) struct TriangleListPrimitive {
+    #[prost(message, optional, tag = "1")]
+    pub(super) pose: Option<Pose>,
+    /// Three for each triangle, m.
+    #[prost(message, repeated, tag = "2")]
+    pub(super) points: Vec<Vector3>,
+    #[prost(message, optional, tag = "3")]
+    pub(super) color: Option<Color>,
 }
 
 /// `foxglove.CylinderPrimitive`

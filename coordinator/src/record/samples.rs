@@ -13,11 +13,13 @@ pub fn scenario(robots: usize) -> Scenario {
         start: Position::new(10.0 * i as f64, 0.0),
         set_point: Position::new(10.0 * i as f64 + 5.0, 0.5),
         radius: None,
+        max_speed: None,
     };
     Scenario {
         name: "sample".into(),
         robots: (0..robots).map(robot).collect(),
         obstacles: vec![Obstacle { name: "rock".into(), position: Position::new(0.0, 9.0), radius: Some(1.0) }],
+        shapes: Vec::new(),
         max_ticks: 100,
         seed: 5,
         allow_close_start: false,

@@ -4,7 +4,7 @@
 
 use super::foxglove::{
     Color, CylinderPrimitive, LinePrimitive, LineType, Message, Pose, PosesInFrame, Quaternion, SceneEntity,
-    SceneUpdate, TextPrimitive, Timestamp, Vector3, nonzero,
+    SceneUpdate, TextPrimitive, Timestamp, TriangleListPrimitive, Vector3, nonzero,
 };
 use vodca::Position;
 use vodca::params::Params;
@@ -30,7 +30,32 @@ pub(super) fn layout(scenario: &Scenario, params: &Params) -> Vec<u8> {
         let ring = line(LineType::Loop, &rim, colour(i, count, 0.6));
         SceneEntity { lines: vec![ring], ..entity(&format!("set-point {i}"), 0) }
     });
-    SceneUpdate { entities: obstacles.chain(set_points).collect() }.encode_to_vec()
+    SceneUpdate { entities: obstacles.chain(shapes(scenario)).chain(set_points).collect() }.encode_to_vec()
+}
+
+/// Polygons, walls and regions, numbered after the discs: their pieces as triangles, walls as lines as well.
+fn shapes(scenario: &Scenario) -> impl Iterator<Item = SceneEntity> {
+    let numbered = scenario.shapes.iter().enumerate();
+    numbered.map(|(l, shape)| {
+        let fan = |core: &Vec<Position>| {
+            let last = core.len().saturating_sub(1);
+            let corners = core.clone();
+            (1..last).flat_map(move |k| [corners[0], corners[k], corners[k + 1]])
+        };
+        let points: Vec<Vector3> = shape.cores().iter().flat_map(fan).map(|at| point(at, DISC_HEIGHT)).collect();
+        let triangles = TriangleListPrimitive { pose: Some(pose(Position::zeros(), 0.0)), points, color: Some(GREY) };
+        let borders = shape.rings().iter().map(|ring| LinePrimitive {
+            thickness: (2.0 * shape.radius()).max(0.05),
+            ..line(LineType::Loop, ring, GREY)
+        });
+        let label = shape.rings().first().and_then(|ring| ring.first()).map(|at| label(*at, shape.name()));
+        SceneEntity {
+            lines: borders.collect(),
+            triangles: Some(triangles).filter(|list| !list.points.is_empty()).into_iter().collect(),
+            texts: label.into_iter().collect(),
+            ..entity(&format!("obstacle {}", scenario.obstacles.len() + l), 0)
+        }
+    })
 }
 
 /// `SceneUpdate` of one tick: every robot as a disc with its number, and its predicted path.

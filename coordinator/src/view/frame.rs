@@ -101,7 +101,7 @@ pub(super) mod tests {
 
     pub(in crate::view) fn sample_of(robots: usize, tick: u64) -> Frame {
         let params = Params::safe();
-        let layout = Layout::of(&samples::scenario(robots), params.model.min_separation);
+        let layout = Layout::of(&samples::scenario(robots), &params.model);
         let mut explainer = Explainer::new(Arc::new(params), Arc::new(layout));
         explainer.observe(tick, &samples::steps(robots, tick));
         Frame {

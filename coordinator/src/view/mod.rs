@@ -103,10 +103,7 @@ impl Views {
             terminal,
             browser,
             foxglove,
-            explainer: Explainer::new(
-                Arc::new(params.clone()),
-                Arc::new(Layout::of(scenario, params.model.min_separation)),
-            ),
+            explainer: Explainer::new(Arc::new(params.clone()), Arc::new(Layout::of(scenario, &params.model))),
             fallbacks: 0,
             next: Instant::now(),
             last: None,

@@ -5,10 +5,12 @@
 //! horizons, the same controller without training.
 
 mod animation;
+mod films;
 mod kept_run;
 pub(crate) mod svg;
 
-use animation::animation;
+use animation::{Look, animation};
+use films::FILMS;
 use kept_run::{KeptRun, Setting};
 use std::error::Error;
 use svg::{COLOURS, Chart, FAILED, Labels};
@@ -55,8 +57,12 @@ pub fn all(mut done: impl FnMut(&str)) -> Result<Vec<Figure>, Failed> {
         variable.scenario.robots.len(),
         variable.ticks.len() as f64 * variable.params.model.sample_time
     );
-    figures.push(("fourteen.svg", animation(&SAFE, &variable, &title)));
+    figures.push(("fourteen.svg", animation(&SAFE, &variable, &Look::FULL, &title)));
     done("the moving picture");
+    for film in FILMS {
+        figures.push((film.file, film.draw()?));
+        done(film.file);
+    }
     Ok(figures)
 }
 
@@ -104,7 +110,9 @@ fn motion(setting: &Setting, kept: &KeptRun, title: &str) -> String {
     let mut corners = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
     let states = kept.ticks.iter().flatten().map(|step| step.next_position);
     let places = kept.scenario.robots.iter().flat_map(|robot| [robot.start, robot.set_point]);
-    for place in states.chain(places).chain(kept.scenario.obstacles.iter().map(|obstacle| obstacle.position)) {
+    let discs = kept.scenario.obstacles.iter().map(|obstacle| obstacle.position);
+    let rings = kept.scenario.shapes.iter().flat_map(|shape| shape.rings().iter().flatten().copied());
+    for place in states.chain(places).chain(discs).chain(rings) {
         for axis in 0..2 {
             corners[0][axis] = corners[0][axis].min(place[axis] - 2.0 * half);
             corners[1][axis] = corners[1][axis].max(place[axis] + 2.0 * half);
@@ -115,6 +123,11 @@ fn motion(setting: &Setting, kept: &KeptRun, title: &str) -> String {
     let [low, high] = corners;
     let mut chart = Chart::new(&labels, [low[0], high[0]], [low[1], high[1]], true);
     chart.number_x();
+    for shape in &kept.scenario.shapes {
+        let rings: Vec<Vec<[f64; 2]>> =
+            shape.rings().iter().map(|ring| ring.iter().map(|at| [at.x, at.y]).collect()).collect();
+        chart.shape(&rings, shape.radius(), "#8c8c8c");
+    }
     for obstacle in &kept.scenario.obstacles {
         let at = [obstacle.position.x, obstacle.position.y];
         chart.disc(at, obstacle.radius.unwrap_or(half), "#8c8c8c", true);

@@ -142,6 +142,17 @@ impl Chart {
         ));
     }
 
+    /// Closed chains of points: filled by the even-odd rule, or, with a `radius` on the x axis' scale, drawn as wide.
+    pub(crate) fn shape(&mut self, rings: &[Vec<[f64; 2]>], radius: f64, colour: &str) {
+        let width = 2.0 * (self.x(radius) - self.x(0.0));
+        let path = rings_path(rings, |[x, y]| [self.x(x), self.y(y)]);
+        let fill = if radius > 0.0 { "none" } else { colour };
+        self.add(format_args!(
+            "<path fill=\"{fill}\" fill-rule=\"evenodd\" stroke=\"{colour}\" stroke-width=\"{width:.1}\" \
+             stroke-linejoin=\"round\" d=\"{path}\"/>"
+        ));
+    }
+
     /// A word at a place of the plot.
     pub(crate) fn word(&mut self, [x, y]: [f64; 2], text: &str) {
         self.text(self.x(x), self.y(y) + 4.0, "middle", text);
@@ -201,6 +212,19 @@ fn round_values([from, to]: [f64; 2]) -> Vec<f64> {
     let first = (from / step).ceil() as i64;
     let last = (to / step).floor() as i64;
     (first..=last).map(|n| (n as f64 * step * 1e6).round() / 1e6).collect()
+}
+
+/// The path of closed chains of points, each put where `at` says.
+pub(super) fn rings_path(rings: &[Vec<[f64; 2]>], at: impl Fn([f64; 2]) -> [f64; 2]) -> String {
+    let mut path = String::new();
+    for ring in rings {
+        for (index, point) in ring.iter().enumerate() {
+            let [x, y] = at(*point);
+            let _ = write!(path, "{}{x:.1} {y:.1}", if index == 0 { "M" } else { "L" });
+        }
+        path.push('Z');
+    }
+    path
 }
 
 #[cfg(test)]

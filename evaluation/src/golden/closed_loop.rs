@@ -38,6 +38,7 @@ impl Case {
             start: place(start),
             set_point: place(goal),
             radius: None,
+            max_speed: None,
         };
         let obstacle = |(index, at): (usize, &[f64; 2])| Obstacle {
             name: format!("obstacle{index}"),
@@ -48,6 +49,7 @@ impl Case {
             name: self.name.clone(),
             robots: self.start.iter().zip(&self.goal).enumerate().map(robot).collect(),
             obstacles: self.obstacles.iter().enumerate().map(obstacle).collect(),
+            shapes: Vec::new(),
             max_ticks: self.horizons.len() as u64,
             seed: 0,
             allow_close_start: true,

@@ -106,11 +106,11 @@ impl Case {
         let own = place(&present[self.robot]);
         let separation = params.cell.separation;
         for (other, at) in present.iter().enumerate().filter(|(other, _)| *other != self.robot) {
-            let hazard = Present { position: place(at), separation, moves: true };
+            let hazard = Present { position: place(at), separation, moves: Some(cell.stride) };
             cell.keep_away(own, &hazard, params.cell.escape, self.robot < other);
         }
         for at in &self.obstacles {
-            let hazard = Present { position: place(at), separation, moves: false };
+            let hazard = Present { position: place(at), separation, moves: None };
             cell.keep_away(own, &hazard, params.cell.escape, true);
         }
         cell

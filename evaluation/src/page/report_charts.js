@@ -90,6 +90,12 @@ function cividis(part) {
 function motion(run, [x0, y0, x1, y1], place) {
   const chart = new Chart(place, { title: "Motion", xLabel: "x (m)", yLabel: "y (m)", x: [x0, x1], y: [y0, y1], equal: true });
   const radius = metres => Math.abs(chart.toX(metres) - chart.toX(0));
+  for (const { rings, radius: r } of run.layout.shapes) {
+    const d = rings.map(ring => `M${ring.map(([x, y]) => `${chart.toX(x)} ${chart.toY(y)}`).join("L")}Z`).join("");
+    const look = r > 0 ? { fill: "none", stroke: "#8c8c8c", "stroke-width": 2 * radius(r), "stroke-linejoin": "round" }
+      : { fill: "#8c8c8c", "fill-rule": "evenodd" };
+    shape(chart.svg, "path", { d, opacity: 0.6, ...look });
+  }
   for (const { at: [x, y], radius: r } of run.layout.obstacles) {
     shape(chart.svg, "circle", { cx: chart.toX(x), cy: chart.toY(y), r: radius(r), fill: "#8c8c8c", opacity: 0.6 });
   }

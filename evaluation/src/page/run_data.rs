@@ -6,7 +6,6 @@ use policy::encoding::base64;
 use serde_json::{Value, json};
 use std::sync::Arc;
 use vodca::explain::Explainer;
-use vodca::geometry::Disc;
 use vodca::layout::Layout;
 use vodca::params::Params;
 use vodca::scenario::Scenario;
@@ -37,7 +36,7 @@ pub fn run(recorded: &Recorded) -> Value {
         "separation": floats(separations(scenario, params, ticks)),
         "tickMs": floats(recorded.tick_ns.iter().filter(|_| has_latency).map(|&ns| ns as f64 / 1e6)),
         "stepUs": floats(step_us),
-        "plans": plans(params, ticks),
+        "plans": plans(scenario, params, ticks),
         "lines": lines(scenario, params, ticks),
     })
 }
@@ -48,8 +47,8 @@ fn bytes(values: impl Iterator<Item = usize>) -> String {
 
 /// Plans as moves of whole `grid` metres, one signed byte per axis and step; what is rounded off goes into
 /// the next move, so that no point is off by more than half a grid.
-fn plans(params: &Params, ticks: &[Vec<Step>]) -> Value {
-    let grid = params.model.max_speed * params.model.sample_time / 120.0;
+fn plans(scenario: &Scenario, params: &Params, ticks: &[Vec<Step>]) -> Value {
+    let grid = scenario.fastest(params.model.max_speed) * params.model.sample_time / 120.0;
     let (mut lengths, mut moves) = (Vec::new(), Vec::new());
     for step in ticks.iter().flatten() {
         let states = step.plan.states();
@@ -74,7 +73,7 @@ fn floats(values: impl IntoIterator<Item = f64>) -> String {
 
 /// Active collision rows: how many per tick and robot, then step, normal's angle (rad) and offset (m) of each.
 fn lines(scenario: &Scenario, params: &Params, ticks: &[Vec<Step>]) -> Value {
-    let layout = Layout::of(scenario, params.model.min_separation);
+    let layout = Layout::of(scenario, &params.model);
     let mut explainer = Explainer::new(Arc::new(params.clone()), Arc::new(layout));
     let (mut found, mut counts) = (Vec::new(), Vec::new());
     for (tick, steps) in ticks.iter().enumerate() {
@@ -96,7 +95,7 @@ fn lines(scenario: &Scenario, params: &Params, ticks: &[Vec<Step>]) -> Value {
 /// Smallest separation of every robot to anything in every tick, m, between samples too and with radii
 /// beyond min_separation / 2 taken off; -1 when there is nothing else.
 pub fn separations(scenario: &Scenario, params: &Params, ticks: &[Vec<Step>]) -> Vec<f64> {
-    let discs = scenario.discs(params.model.min_separation);
+    let obstacles = scenario.standing(params.model.min_separation);
     let extra = |robot: usize| scenario.extra_radius(robot, params.model.min_separation);
     let mut all = Vec::new();
     for steps in ticks {
@@ -105,8 +104,10 @@ pub fn separations(scenario: &Scenario, params: &Params, ticks: &[Vec<Step>]) ->
             let others = (0..steps.len()).filter(|&other| other != robot);
             let to_robots = others.map(|other| separation(motion(robot), motion(other)) - extra(other));
             let to_discs =
-                discs.iter().map(|disc: &Disc| separation(motion(robot), (disc.centre, disc.centre)) - disc.extra);
-            let least = to_robots.chain(to_discs).fold(f64::INFINITY, f64::min) - extra(robot);
+                obstacles.discs().iter().map(|disc| separation(motion(robot), (disc.centre, disc.centre)) - disc.extra);
+            let (from, to) = motion(robot);
+            let to_shapes = obstacles.separations(from, to, f64::INFINITY).map(|(_, separation)| separation);
+            let least = to_robots.chain(to_discs).chain(to_shapes).fold(f64::INFINITY, f64::min) - extra(robot);
             all.push(if least.is_finite() { least } else { -1.0 });
         }
     }

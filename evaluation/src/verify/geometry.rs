@@ -1,5 +1,6 @@
 //! Separations and paths, recomputed.
 
+use super::outline::Outline;
 use super::table::Table;
 use std::collections::BTreeSet;
 use vodca::params::Params;
@@ -56,16 +57,15 @@ impl PredictedMotion {
         };
         // Hazards are counted robots first, then obstacles.
         let mut collided = BTreeSet::new();
-        let hazards = robots + scenario.obstacles.len();
+        let shapes: Vec<Outline> = scenario.shapes.iter().map(Outline::of).collect();
+        let hazards = robots + scenario.obstacles.len() + shapes.len();
         let mut kept = vec![f64::NEG_INFINITY; robots * hazards];
         let at_samples = params.disturbance.noise > 0.0;
         // A run without a whole tick has its start: everybody stands there.
         for tick in 0..table.ticks.len().max(1) {
             let mut least = f64::INFINITY;
-            let mut note = |from: [f64; 2], to: [f64; 2], extra: f64, robot: usize, hazard: usize| {
-                let near = nearest(from, to) - extra;
+            let mut note = |[near, before, after]: [f64; 3], robot: usize, hazard: usize| {
                 least = least.min(near);
-                let (before, after) = (from[0].hypot(from[1]) - extra, to[0].hypot(to[1]) - extra);
                 let kept = &mut kept[robot * hazards + hazard];
                 *kept = kept.max(before.min(params.cell.separation));
                 let separation = if at_samples { after } else { near };
@@ -86,11 +86,17 @@ impl PredictedMotion {
                 for j in i + 1..robots {
                     let (other_from, other_to) = (table.position(tick, j), table.position(tick + 1, j));
                     let both = own + extra(scenario.robots[j].radius);
-                    note(minus(from, other_from), minus(to, other_to), both, i, j);
+                    note(between(minus(from, other_from), minus(to, other_to), both), i, j);
                 }
                 for (l, obstacle) in scenario.obstacles.iter().enumerate() {
                     let centre = [obstacle.position.x, obstacle.position.y];
-                    note(minus(from, centre), minus(to, centre), own + extra(obstacle.radius), i, robots + l);
+                    note(between(minus(from, centre), minus(to, centre), own + extra(obstacle.radius)), i, robots + l);
+                }
+                for (l, shape) in shapes.iter().enumerate() {
+                    // A surface at half of the separation counts as the centre of a disc at all of it.
+                    let away = |from, to| shape.distance(from, to) + half - own;
+                    let three = [away(from, to), away(from, from), away(to, to)];
+                    note(three, i, robots + scenario.obstacles.len() + l);
                 }
             }
             course.ticks_below += u64::from(tick < table.ticks.len() && least < limit - super::TOUCH);
@@ -106,7 +112,12 @@ impl PredictedMotion {
     }
 }
 
-fn minus(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+/// The separation in between, before and after, of a pair whose offset goes from `from` to `to`, m.
+fn between(from: [f64; 2], to: [f64; 2], extra: f64) -> [f64; 3] {
+    [nearest(from, to) - extra, from[0].hypot(from[1]) - extra, to[0].hypot(to[1]) - extra]
+}
+
+pub(super) fn minus(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
     [a[0] - b[0], a[1] - b[1]]
 }
 

@@ -5,6 +5,7 @@
 //! formula for the separation (`geometry`), so that one mistake cannot hide another.
 
 mod geometry;
+mod outline;
 mod table;
 #[cfg(test)]
 mod tests;
@@ -157,7 +158,7 @@ fn check(trajectory: &str, horizons: &str, scenario: &Scenario, params: &Params,
     let course = PredictedMotion::follow(&table, scenario, params);
     let findings = [
         starts(&table, scenario),
-        bounds(&table, params),
+        bounds(&table, scenario, params),
         motion(&table, params),
         chosen_horizons(&table, horizons, cut),
         guarantee(&course, scenario, params),
@@ -187,9 +188,9 @@ fn starts(table: &Table, scenario: &Scenario) -> Option<Finding> {
 }
 
 /// Every input is within its bound per axis.
-fn bounds(table: &Table, params: &Params) -> Option<Finding> {
-    let most = params.model.max_speed;
+fn bounds(table: &Table, scenario: &Scenario, params: &Params) -> Option<Finding> {
     first(table, |k, i, row| {
+        let most = scenario.robots[i].max_speed.unwrap_or(params.model.max_speed);
         let over = row.ux.abs().max(row.uy.abs());
         let allowed = format!("at most {most} m/s per axis");
         (over > most + BOUND)

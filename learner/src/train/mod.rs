@@ -328,7 +328,8 @@ fn layouts(plan: &TrainingConfig) -> Result<Vec<Scenario>, TrainError> {
 fn contract(plan: &TrainingConfig, layouts: &[Scenario]) -> Contract {
     let points = layouts.iter().flat_map(|layout| {
         let robots = layout.robots.iter().flat_map(|robot| [robot.start, robot.set_point]);
-        robots.chain(layout.obstacles.iter().map(|obstacle| obstacle.position))
+        let rings = layout.shapes.iter().flat_map(|shape| shape.rings().iter().flatten().copied());
+        robots.chain(layout.obstacles.iter().map(|obstacle| obstacle.position)).chain(rings)
     });
     let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
     for point in points {

@@ -1,7 +1,7 @@
 //! Optimal reciprocal collision avoidance (van den Berg, Guy, Lin and Manocha, 2011): the baseline.
 //!
 //! Speeds are bounded by norm, as in RVO2. Obstacles are discs at rest that do not give way, so a robot
-//! takes the whole responsibility for them.
+//! takes the whole responsibility for them; a piece of a polygon or a wall is the disc of radius 0 at its nearest point.
 
 use super::half_planes::{HalfPlane, cross, nearest_velocity};
 use crate::controller::{Controller, Decision, View};
@@ -42,7 +42,7 @@ struct Disc {
 impl OrcaController {
     /// The controller of `robot`; everything a tick needs is allocated here. `seed` feeds `orca.push`.
     pub fn new(robot: usize, params: &Params, layout: &Arc<Layout>, seed: u64) -> Self {
-        let discs = layout.set_points.len() + layout.obstacles.len();
+        let discs = layout.set_points.len() + layout.obstacles.solids();
         Self {
             robot,
             seed,
@@ -60,7 +60,7 @@ impl OrcaController {
     fn preferred_velocity(&self, position: Position, tick: u64) -> Input {
         let model = &self.params.model;
         let path = self.layout.routes[self.robot].path(position);
-        let step = path.after(position, model.max_speed * model.sample_time) - position;
+        let step = path.after(position, self.layout.max_speed[self.robot] * model.sample_time) - position;
         let straight = step / model.sample_time;
         // A constant turn circles the set-point at the end: a full tick's way is lost there.
         let aim = self.params.orca.aim * (path.length / self.params.orca.fade).min(1.0);
@@ -73,9 +73,10 @@ impl OrcaController {
         let (layout, usual) = (&self.layout, self.params.model.min_separation);
         let h = self.params.model.sample_time;
         self.planes.clear();
-        for obstacle in &self.layout.obstacles {
-            let offset = obstacle.centre - view.position;
-            let radii = layout.owed_to_obstacle(usual, self.robot, obstacle);
+        for obstacle in layout.obstacles.near(view.position, orca.neighbour_distance) {
+            let seen = obstacle.seen_from(view.position);
+            let offset = seen.centre - view.position;
+            let radii = layout.owed_to_obstacle(usual, self.robot, &seen);
             let disc = Disc { offset, relative_velocity: self.velocity, radii, share: 1.0 };
             if offset.norm() < orca.neighbour_distance {
                 self.planes.push(half_plane(&disc, self.velocity, orca.time_horizon, h));
@@ -141,8 +142,8 @@ impl Controller for OrcaController {
     fn tick(&mut self, view: &View<'_>) -> Decision {
         let fixed = self.look_around(view);
         let wanted = self.preferred_velocity(view.position, view.tick);
-        let model = &self.params.model;
-        let input = nearest_velocity(&self.planes, fixed, model.max_speed, wanted, &mut self.scratch);
+        let (model, speed) = (&self.params.model, self.layout.max_speed[self.robot]);
+        let input = nearest_velocity(&self.planes, fixed, speed, wanted, &mut self.scratch);
         self.velocity = input;
         let set_point = self.layout.set_points[self.robot];
         // What it will do next is not planned: the velocity is published for one step.

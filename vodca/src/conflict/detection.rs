@@ -2,6 +2,7 @@
 
 use crate::Position;
 use crate::geometry::toward;
+use crate::obstacles::Solid;
 use crate::prediction::Prediction;
 
 /// What a hazard is expected to do.
@@ -25,8 +26,10 @@ pub enum PredictedMotion<'a> {
         /// Largest move per step and axis, m: h times the largest speed.
         stride: f64,
     },
-    /// It stays (an obstacle).
+    /// It stays (a disc).
     Still(Position),
+    /// It stays and is no disc: what is owed to it is owed to its nearest point.
+    Shape(Solid<'a>),
 }
 
 /// A neighbour or an obstacle: what a robot must keep away from.
@@ -34,21 +37,50 @@ pub enum PredictedMotion<'a> {
 pub struct Hazard<'a> {
     /// Where it will be.
     pub course: PredictedMotion<'a>,
-    /// Separation owed to it, m (r_min plus radii beyond r_min / 2 plus clearance).
+    /// Separation owed to it, m (r_min plus radii beyond r_min / 2 plus clearance); to a shape as if it were a disc of the
+    /// usual size.
     pub separation: f64,
 }
 
 impl Hazard<'_> {
-    /// Where the hazard is at prediction step `step` of the plans of tick k - 1; `None` beyond its plan.
-    pub fn at(&self, step: usize) -> Option<Position> {
-        match self.course {
+    /// Where the hazard is at prediction step `step` of the plans of tick k - 1, for a robot that is at `own` (m) then,
+    /// and the separation owed to it there, m; `None` beyond its plan.
+    pub fn at(&self, step: usize, own: Position) -> Option<(Position, f64)> {
+        let place = match self.course {
             PredictedMotion::Plan { plan, age } => {
                 let last = plan.horizon().steps();
-                (step <= last).then(|| plan.state(step.saturating_add(age).min(last)))
+                (step <= last).then(|| plan.state(step.saturating_add(age).min(last)))?
             }
-            PredictedMotion::Wish { from, to, stride } => Some(toward(from, to, stride * step as f64)),
-            PredictedMotion::Still(position) => Some(position),
+            PredictedMotion::Wish { from, to, stride } => toward(from, to, stride * step as f64),
+            PredictedMotion::Still(position) => position,
+            PredictedMotion::Shape(solid) => {
+                let disc = solid.seen_from(own);
+                return Some((disc.centre, self.separation + disc.extra));
+            }
+        };
+        Some((place, self.separation))
+    }
+
+    /// Whether it is passed on one side as well as on the other, so that a rule may say on which. A shape is not: ways
+    /// lead round it ([`crate::way`]), and along a wall a turned normal would brake who has it on its right.
+    fn has_sides(&self) -> bool {
+        !matches!(self.course, PredictedMotion::Shape(_))
+    }
+
+    /// Whether it is too far from `own` (m) to be in conflict, as far as that is known cheaply.
+    fn is_beyond(&self, own: Position) -> bool {
+        match self.course {
+            PredictedMotion::Shape(Solid::Piece(piece, _)) => piece.bounds().distance(own) >= self.separation,
+            _ => false,
         }
+    }
+
+    /// Its state at `step` beside the robot's own, `plan`'s: a conflict or none; `None` beyond its plan.
+    pub(super) fn meeting(&self, plan: &Prediction, step: usize) -> Option<Conflict> {
+        let own = plan.state(step);
+        let (hazard, separation) = self.at(step, own)?;
+        let distance = (own - hazard).norm();
+        Some(Conflict { step, distance, own, hazard, separation, has_sides: self.has_sides() })
     }
 }
 
@@ -65,6 +97,8 @@ pub struct Conflict {
     pub hazard: Position,
     /// Separation owed to the hazard, m.
     pub separation: f64,
+    /// Whether the normal of its row may be turned.
+    pub has_sides: bool,
 }
 
 /// Finds the first step in `from_step..=last_step` at which `plan` comes closer to `hazard` than the
@@ -75,10 +109,12 @@ pub struct Conflict {
 pub fn first_conflict(plan: &Prediction, hazard: &Hazard<'_>, from_step: usize, last_step: usize) -> Option<Conflict> {
     let last_step = last_step.min(plan.horizon().steps());
     for step in from_step..=last_step {
-        let (own, other) = (plan.state(step), hazard.at(step)?);
-        let distance = (own - other).norm();
-        if distance < hazard.separation {
-            return Some(Conflict { step, distance, own, hazard: other, separation: hazard.separation });
+        if hazard.is_beyond(plan.state(step)) {
+            continue;
+        }
+        let meeting = hazard.meeting(plan, step)?;
+        if meeting.distance < meeting.separation {
+            return Some(meeting);
         }
     }
     None
@@ -117,9 +153,10 @@ mod tests {
     #[test]
     fn a_late_plan_is_shifted_and_ends_where_it_ended() {
         let plan = line(0.0, 1.0, 3);
-        let late = |step| Hazard { course: PredictedMotion::Plan { plan: &plan, age: 2 }, separation: 1.0 }.at(step);
-        assert_eq!(late(1), Some(Position::new(3.0, 0.0)));
-        assert_eq!(late(3), Some(Position::new(3.0, 0.0)));
+        let hazard = Hazard { course: PredictedMotion::Plan { plan: &plan, age: 2 }, separation: 1.0 };
+        let late = |step| hazard.at(step, Position::zeros());
+        assert_eq!(late(1), Some((Position::new(3.0, 0.0), 1.0)));
+        assert_eq!(late(3), Some((Position::new(3.0, 0.0), 1.0)));
         assert_eq!(late(4), None);
     }
 
@@ -133,7 +170,7 @@ mod tests {
     fn a_wish_ends_at_the_set_point() {
         let (from, to) = (Position::zeros(), Position::new(1.0, -0.5));
         let wish = Hazard { course: PredictedMotion::Wish { from, to, stride: 0.3 }, separation: 1.0 };
-        assert!((wish.at(1).unwrap() - Position::new(0.3, -0.15)).norm() < 1e-15);
-        assert_eq!(wish.at(4), Some(to));
+        assert!((wish.at(1, from).unwrap().0 - Position::new(0.3, -0.15)).norm() < 1e-15);
+        assert_eq!(wish.at(4, from), Some((to, 1.0)));
     }
 }

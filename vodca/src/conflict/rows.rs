@@ -55,9 +55,11 @@ fn earliest(tie: Tie, conflicts: impl Iterator<Item = Conflict>) -> Option<Confl
 
 /// A hazard within `reach` at `step`, conflicting or not (Luis and Schoellig 2019).
 fn nearby(plan: &Prediction, hazard: &Hazard<'_>, step: usize, reach: f64) -> Option<Conflict> {
-    let (own, other) = (plan.state(step), hazard.at(step)?);
-    let distance = (own - other).norm();
-    (distance < reach).then_some(Conflict { step, distance, own, hazard: other, separation: hazard.separation })
+    hazard.meeting(plan, step).filter(|meeting| {
+        // A shape's nearest point is as near as the centre of a disc that lies behind it.
+        let behind = if meeting.has_sides { 0.0 } else { hazard.separation - meeting.separation };
+        meeting.distance + behind < reach
+    })
 }
 
 /// The row of one conflict: b' x[p] >= c with b turned left by `turn`, normalised. With c = r |b| + b' o
@@ -76,10 +78,66 @@ fn row(vodca: &Vodca, turn: f64, conflict: &Conflict, horizon: Horizon) -> Optio
         BeyondHorizon::Skip if wanted > last => return None,
         _ => wanted.min(last),
     };
+    let turn = if conflict.has_sides { turn } else { 0.0 };
     let normal = turned((conflict.own - conflict.hazard) / conflict.distance, turn);
     // Fused on one axis only: exact mirror images (two_setpoint) would stay mirror images for ever in
     // arithmetic that treats both axes alike; the last bit breaks the tie, as rounding did in the paper.
     let along = normal.x.mul_add(conflict.hazard.x, normal.y * conflict.hazard.y);
     let offset = conflict.separation + along;
     Some(Row { step, normal, offset, hard: vodca.softness == Softness::Hard })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::PredictedMotion;
+    use super::*;
+    use crate::Position;
+    use crate::geometry::Disc;
+    use crate::obstacles::{Obstacles, Solid};
+    use crate::params::Params;
+    use world::shape::{Obstacle, Shape};
+
+    /// The rows of a robot that plans along the x axis, with normals turned by 0.3 rad.
+    fn rows(obstacles: &Obstacles, mut states: Vec<(f64, f64)>) -> Vec<Row> {
+        let vodca = &Params::safe().vodca;
+        let states: Vec<Position> = states.drain(..).map(|(x, y)| Position::new(x, y)).collect();
+        let plan = Prediction::from_states(&states, states[0]);
+        let hazards = obstacles.near(states[0], 99.0).map(|solid| match solid {
+            Solid::Disc(disc) => Hazard { course: PredictedMotion::Still(disc.centre), separation: 1.5 + disc.extra },
+            Solid::Piece(..) => Hazard { course: PredictedMotion::Shape(solid), separation: 1.5 },
+        });
+        let mut rows = Vec::new();
+        collision_rows(vodca, 1.5, 0.3, &plan, plan.horizon(), hazards, &mut rows);
+        rows
+    }
+
+    fn wall() -> Obstacles {
+        let points = vec![Position::new(-9.0, 1.0), Position::new(9.0, 1.0)];
+        Obstacles::new(&[], &[Obstacle::new("wall", Shape::Wall { points, thickness: 0.2 }).unwrap()], 1.5)
+    }
+
+    #[test]
+    fn a_wall_asks_for_the_half_plane_along_it_and_is_not_turned() {
+        let rows = rows(&wall(), vec![(0.0, 0.0), (0.3, 0.1), (0.6, 0.3), (0.9, 0.4)]);
+        assert_eq!(rows.len(), 1);
+        assert!((rows[0].normal - Position::new(0.0, -1.0)).norm() < 1e-12);
+        // Surface at y = 0.9, a radius of 0.75 off.
+        assert!((rows[0].offset - -0.15).abs() < 1e-12, "{}", rows[0].offset);
+    }
+
+    #[test]
+    fn a_plan_into_a_wall_is_led_out_the_way_that_is_nearest() {
+        let rows = rows(&wall(), vec![(0.0, 0.95), (0.0, 0.95)]);
+        assert!((rows[0].normal - Position::new(0.0, -1.0)).norm() < 1e-9);
+        assert!((rows[0].offset - -0.15).abs() < 1e-9, "{}", rows[0].offset);
+    }
+
+    #[test]
+    fn the_row_of_a_disc_touches_its_circle_turned_as_ever() {
+        let disc = Obstacles::new(&[Disc { centre: Position::new(2.0, 0.0), extra: 0.0 }], &[], 1.5);
+        let rows = rows(&disc, vec![(0.0, 0.0), (0.3, 0.0), (0.6, 0.0)]);
+        let normal = turned(Position::new(-1.0, 0.0), 0.3);
+        assert_eq!((rows.len(), rows[0].normal), (1, normal));
+        assert!((rows[0].offset - (1.5 + 2.0 * normal.x)).abs() < 1e-12);
+    }
 }

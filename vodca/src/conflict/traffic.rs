@@ -17,6 +17,8 @@ pub struct StraightMotion {
     pub from: Position,
     /// Set-point, m.
     pub to: Position,
+    /// Largest move per tick and axis, m.
+    pub stride: f64,
 }
 
 /// A walk with what does not depend on the turn.
@@ -28,22 +30,23 @@ struct Straight {
     fade: f64,
     /// Length of the walk, ticks; no whole tick: it stands.
     ticks: f64,
+    /// Largest move per tick and axis, m.
+    stride: f64,
 }
 
 impl Straight {
-    /// `stride` is the largest move per tick and axis, m.
-    fn new(aim: &Aim, walk: StraightMotion, stride: f64) -> Self {
-        let way = walk.to - walk.from;
-        Self { from: walk.from, way, fade: aim.fade(way.norm()), ticks: way.amax() / stride }
+    fn new(aim: &Aim, StraightMotion { from, to, stride }: StraightMotion) -> Self {
+        let way = to - from;
+        Self { from, way, fade: aim.fade(way.norm()), ticks: way.amax() / stride, stride }
     }
 
     /// The move per tick after a right turn by `angle`, m: the largest axis at full speed.
-    fn stride(&self, angle: f64, stride: f64) -> Position {
+    fn stride(&self, angle: f64) -> Position {
         if self.ticks < 1.0 {
             return Position::zeros();
         }
         let way = turned(self.way, -angle * self.fade);
-        way * (stride / way.amax())
+        way * (self.stride / way.amax())
     }
 }
 
@@ -51,15 +54,14 @@ impl Straight {
 #[derive(Clone, Debug)]
 pub struct Traffic {
     aim: Aim,
-    stride: f64,
     /// The others' walks with the separation owed to them, m.
     others: Vec<(Straight, f64)>,
 }
 
 impl Traffic {
-    /// Room for `robots`. `stride` is the largest move per tick and axis, m.
-    pub fn with_capacity(robots: usize, aim: &Aim, stride: f64) -> Self {
-        Self { aim: aim.clone(), stride, others: Vec::with_capacity(robots) }
+    /// Room for `robots`.
+    pub fn with_capacity(robots: usize, aim: &Aim) -> Self {
+        Self { aim: aim.clone(), others: Vec::with_capacity(robots) }
     }
 
     /// Forgets the last tick.
@@ -69,14 +71,14 @@ impl Traffic {
 
     /// One more robot that wishes to walk and is owed `separation`, m.
     pub fn add(&mut self, walk: StraightMotion, separation: f64) {
-        self.others.push((Straight::new(&self.aim, walk, self.stride), separation));
+        self.others.push((Straight::new(&self.aim, walk), separation));
     }
 
     /// The right turn, rad, that a robot wishing to walk `own` should take: the one with the fewest
     /// meetings plus `aim.price` meetings per radian, if everybody took it. 0 when a straight walk
     /// meets nobody, at least `aim.angle` when it does.
     pub fn turn(&self, own: StraightMotion) -> f64 {
-        let own = Straight::new(&self.aim, own, self.stride);
+        let own = Straight::new(&self.aim, own);
         let straight = self.meetings(&own, 0.0, usize::MAX);
         if straight == 0 {
             return 0.0;
@@ -98,13 +100,13 @@ impl Traffic {
     /// How many others `own` meets within `aim.look_ahead` ticks if everybody turns right by `angle`;
     /// not counted on from `enough`.
     fn meetings(&self, own: &Straight, angle: f64, enough: usize) -> usize {
-        let velocity = own.stride(angle, self.stride);
+        let velocity = own.stride(angle);
         let meets = |(other, separation): &&(Straight, f64)| {
             // Whoever stands is met by who walks, whoever walks only until one of both has arrived.
             let walk = if other.ticks < 1.0 { own.ticks } else { own.ticks.min(other.ticks) };
             let until = walk.min(self.aim.look_ahead as f64);
             let apart = own.from - other.from;
-            let closing = velocity - other.stride(angle, self.stride);
+            let closing = velocity - other.stride(angle);
             let speed_2 = closing.norm_squared();
             let nearest = if speed_2 > 0.0 { (-apart.dot(&closing) / speed_2).clamp(0.0, until) } else { 0.0 };
             (apart + closing * nearest).norm_squared() < separation * separation
@@ -127,11 +129,11 @@ mod tests {
     }
 
     fn walk(from: (f64, f64), to: (f64, f64)) -> StraightMotion {
-        StraightMotion { from: Position::new(from.0, from.1), to: Position::new(to.0, to.1) }
+        StraightMotion { from: Position::new(from.0, from.1), to: Position::new(to.0, to.1), stride: STRIDE }
     }
 
     fn turn(aim: &Aim, own: StraightMotion, others: &[StraightMotion]) -> f64 {
-        let mut traffic = Traffic::with_capacity(others.len(), aim, STRIDE);
+        let mut traffic = Traffic::with_capacity(others.len(), aim);
         others.iter().for_each(|other| traffic.add(*other, 1.5));
         traffic.turn(own)
     }
@@ -181,9 +183,9 @@ mod tests {
             let aim = Aim { angle: 0.0, ..aim() };
             let angle = turn(&aim, walks[0], &walks[1..]);
             prop_assert!((0.0..=aim.most).contains(&angle));
-            let mut traffic = Traffic::with_capacity(walks.len(), &aim, STRIDE);
+            let mut traffic = Traffic::with_capacity(walks.len(), &aim);
             walks[1..].iter().for_each(|other| traffic.add(*other, 1.5));
-            let own = Straight::new(&aim, walks[0], STRIDE);
+            let own = Straight::new(&aim, walks[0]);
             let cost = |angle: f64| traffic.meetings(&own, angle, usize::MAX) as f64 + aim.price * angle;
             for step in 0..=TURNS {
                 prop_assert!(cost(angle) <= cost(aim.most * step as f64 / TURNS as f64) + 1e-12);

@@ -2,7 +2,7 @@
 
 use super::{RobotSummary, RunSummary, SEPARATION_TOLERANCE, SolverLevels, Statuses};
 use crate::Position;
-use crate::geometry::Disc;
+use crate::obstacles::Obstacles;
 use crate::params::Params;
 use crate::scenario::Scenario;
 use crate::separation::separation;
@@ -18,7 +18,7 @@ pub struct RunMetrics {
     arrival_tolerance: f64,
     limit: f64,
     collision_distance: f64,
-    obstacles: Vec<Disc>,
+    obstacles: Obstacles,
     robots: Vec<Tally>,
     /// Own copy of this tick's motions, close together in memory.
     moves: Vec<(Position, Position)>,
@@ -80,14 +80,14 @@ impl RunMetrics {
                 }
             })
             .collect();
-        let obstacles = scenario.discs(min_separation);
+        let obstacles = scenario.standing(min_separation);
         let mut metrics = Self {
             sample_time: params.model.sample_time,
             arrival_tolerance: tolerance,
             limit: min_separation - SEPARATION_TOLERANCE,
             collision_distance: params.episode.collision_factor * min_separation,
             moves: scenario.robots.iter().map(|robot| (robot.start, robot.start)).collect(),
-            pairs: vec![0; robots.len() * (robots.len() + obstacles.len())],
+            pairs: vec![0; robots.len() * (robots.len() + obstacles.count())],
             obstacles,
             robots,
             ticks: 0,
@@ -131,7 +131,7 @@ impl RunMetrics {
     /// close in by their travel at most.
     fn observe_separations(&mut self) -> f64 {
         let mut least = f64::INFINITY;
-        let hazards = self.robots.len() + self.obstacles.len();
+        let hazards = self.robots.len() + self.obstacles.count();
         let (limit, collision) = (self.limit, self.collision_distance);
         let broken = |found: f64| (BELOW * u8::from(found < limit)) | (COLLIDED * u8::from(found < collision));
         let interesting = limit.max(collision);
@@ -152,13 +152,20 @@ impl RunMetrics {
                 least = least.min(found);
                 self.pairs[i * hazards + i + 1 + j] |= broken(found);
             }
-            for (l, obstacle) in self.obstacles.iter().enumerate() {
+            for (l, obstacle) in self.obstacles.discs().iter().enumerate() {
                 let extra = robot.extra + obstacle.extra;
                 let reach = interesting.max(robot.least) + robot.travel + extra;
                 if is_beyond(own.0 - obstacle.centre, reach) {
                     continue;
                 }
                 let found = separation(own, (obstacle.centre, obstacle.centre)) - extra;
+                robot.least = robot.least.min(found);
+                least = least.min(found);
+                self.pairs[i * hazards + self.moves.len() + l] |= broken(found);
+            }
+            let reach = interesting.max(robot.least) + robot.extra + ROUNDING;
+            for (l, separation) in self.obstacles.separations(own.0, own.1, reach) {
+                let found = separation - robot.extra;
                 robot.least = robot.least.min(found);
                 least = least.min(found);
                 self.pairs[i * hazards + self.moves.len() + l] |= broken(found);
@@ -189,7 +196,7 @@ impl RunMetrics {
 
     /// The figures so far.
     pub fn finish(&self) -> RunSummary {
-        let hazards = self.robots.len() + self.obstacles.len();
+        let hazards = self.robots.len() + self.obstacles.count();
         let pairs_with = |bit: u8| self.pairs.iter().filter(|&pair| pair & bit != 0).count() as u64;
         let in_collision = |i: usize| {
             let row = &self.pairs[i * hazards..(i + 1) * hazards];

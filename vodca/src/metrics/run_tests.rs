@@ -36,12 +36,19 @@ fn layout(robots: &[(Position, Position, Option<f64>)], obstacles: &[(Position, 
         robots: robots
             .iter()
             .enumerate()
-            .map(|(i, &(start, set_point, radius))| Robot { name: format!("r{i}"), start, set_point, radius })
+            .map(|(i, &(start, set_point, radius))| Robot {
+                name: format!("r{i}"),
+                start,
+                set_point,
+                radius,
+                max_speed: None,
+            })
             .collect(),
         obstacles: obstacles
             .iter()
             .map(|&(position, radius)| Obstacle { name: "o".into(), position, radius })
             .collect(),
+        shapes: Vec::new(),
         max_ticks: 10,
         seed: 0,
         allow_close_start: false,

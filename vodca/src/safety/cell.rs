@@ -8,6 +8,7 @@
 use crate::Position;
 use crate::geometry::NO_DIRECTION;
 use crate::mpc::problem::Row;
+use std::f64::consts::SQRT_2;
 
 /// `normal . move >= demand` for the move of one tick, m.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,8 +37,19 @@ pub struct Present {
     pub position: Position,
     /// r_s plus radii beyond r_min / 2, m.
     pub separation: f64,
-    /// Whether it moves by the same rules (a robot) or stays (an obstacle).
-    pub moves: bool,
+    /// Its largest move per axis in a tick, m, if it moves by the same rules (a robot); none where it stays.
+    pub moves: Option<f64>,
+}
+
+/// What was last heard of a robot.
+#[derive(Clone, Copy, Debug)]
+pub struct Last {
+    /// Broadcast position, m.
+    pub position: Position,
+    /// Ticks since.
+    pub age: u64,
+    /// Its largest move per axis in a tick, m.
+    pub stride: f64,
 }
 
 impl Cell {
@@ -58,8 +70,8 @@ impl Cell {
     pub fn keep_away(&mut self, own: Position, hazard: &Present, escape: f64, lower: bool) {
         let apart = own - hazard.position;
         let distance = apart.norm();
-        let share = if hazard.moves { 0.5 } else { 1.0 };
-        if distance >= hazard.separation + std::f64::consts::SQRT_2 * self.stride / share {
+        let share = if hazard.moves.is_some() { 0.5 } else { 1.0 };
+        if distance >= hazard.separation + SQRT_2 * (self.stride + hazard.moves.unwrap_or(0.0)) {
             return; // Out of reach even if both run straight at each other.
         }
         let normal = if distance >= NO_DIRECTION {
@@ -71,11 +83,11 @@ impl Cell {
         self.rows.push(CellRow { normal, demand });
     }
 
-    /// Limits the move when a robot's position was last heard `age` ticks ago at `last`: it may have run
-    /// `age` ticks towards us since. The move is then short enough for any direction of it.
-    pub fn stay_near(&mut self, own: Position, last: Position, separation: f64, age: u64) {
-        let run = std::f64::consts::SQRT_2 * self.stride * age as f64;
-        let room = ((own - last).norm() - run - separation) / 2.0;
+    /// Limits the move when a robot's position was last heard some ticks ago: it may have run towards us since. The
+    /// move is then short enough for any direction of it.
+    pub fn stay_near(&mut self, own: Position, last: &Last, separation: f64) {
+        let run = SQRT_2 * last.stride * last.age as f64;
+        let room = ((own - last.position).norm() - run - separation) / 2.0;
         self.reach = self.reach.min(room.max(0.0));
     }
 

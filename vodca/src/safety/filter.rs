@@ -74,7 +74,7 @@ pub fn is_answer(step: Position, cell: &Cell, tolerance: f64) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::super::cell::Present;
+    use super::super::cell::{Last, Present};
     use super::*;
     use crate::separation::separation;
     use proptest::prelude::*;
@@ -115,7 +115,8 @@ mod tests {
     #[test]
     fn a_lost_neighbour_limits_the_length_of_the_move() {
         let mut cell = cell(&[]);
-        cell.stay_near(Position::zeros(), Position::new(2.5, 0.0), 1.5, 1);
+        let last = Last { position: Position::new(2.5, 0.0), age: 1, stride: STRIDE };
+        cell.stay_near(Position::zeros(), &last, 1.5);
         let room = (2.5 - std::f64::consts::SQRT_2 * 0.3 - 1.5) / 2.0;
         assert!((cell.reach - room).abs() < 1e-15);
         let (step, _) = nearest_safe(Position::new(0.3, 0.3), &cell);
@@ -173,9 +174,9 @@ mod tests {
             let at = |angle: f64, d: f64| Position::new(angle.cos() * d, angle.sin() * d);
             let (own, other, obstacle) = (Position::zeros(), at(angle, distance), at(obstacle_angle, room));
             let mut cells = [cell(&[]), cell(&[])];
-            cells[0].keep_away(own, &Present { position: other, separation: 1.5, moves: true }, 0.0, true);
-            cells[1].keep_away(other, &Present { position: own, separation: 1.5, moves: true }, 0.0, false);
-            cells[0].keep_away(own, &Present { position: obstacle, separation: 1.5, moves: false }, 0.0, true);
+            cells[0].keep_away(own, &Present { position: other, separation: 1.5, moves: Some(STRIDE) }, 0.0, true);
+            cells[1].keep_away(other, &Present { position: own, separation: 1.5, moves: Some(STRIDE) }, 0.0, false);
+            cells[0].keep_away(own, &Present { position: obstacle, separation: 1.5, moves: None }, 0.0, true);
             for cell in &cells { prop_assert!(is_safe(Position::zeros(), cell, 0.0)); }
             let own_move = nearest_safe(Position::new(wants[0], wants[1]), &cells[0]).0;
             let other_move = nearest_safe(Position::new(wants[2], wants[3]), &cells[1]).0;

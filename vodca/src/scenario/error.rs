@@ -1,7 +1,10 @@
 //! Why a scenario cannot be used.
 
-use super::{MAX_COORDINATE, MAX_ROBOTS};
+use super::{MAX_COORDINATE, MAX_ROBOTS, MAX_SPEED, lines};
 use std::path::PathBuf;
+use world::check::PlaceProblem;
+use world::file::LayoutError;
+use world::route::Unreachable;
 
 /// Why no scenario was found or why it cannot be used.
 #[derive(Debug, thiserror::Error)]
@@ -41,11 +44,19 @@ pub enum ScenarioError {
         /// As written.
         version: String,
     },
+    /// An obstacle or a map that cannot be used.
+    #[error("{place}: {source}")]
+    Standing {
+        /// The file and the line.
+        place: String,
+        /// What is wrong with what.
+        source: LayoutError,
+    },
     /// No file, built-in or generator by that name.
     #[error(
         "there is no scenario `{spec}`; near names: {}; generated ones: ring:N, box:N:OBSTACLES:SEED, exchange:N:SEED, \
          segregate:GROUPSxSIZE:SEED, park:N:SEED, tight_ring:N:SEED, permute:N:SEED, mixed:N:SEED, door:N:WIDTH:SEED, \
-         pocket:N:SEED, corridor:N:SEED, forest:N:SEED, rooms:N:SEED; a file needs a `/` or `.toml` in its name",
+         pocket:N:SEED, corridor:N:SEED, forest:N:SEED, rooms:N:SEED, warehouse:N:SEED; a file needs a `/` or `.toml` in its name",
         if .near.is_empty() { "none" } else { .near }
     )]
     Unknown {
@@ -91,6 +102,14 @@ impl ScenarioError {
             Self::Invalid { problem, .. } => Self::Invalid { scenario: place.into(), problem },
             other => other,
         }
+    }
+
+    /// The same error with the file in which it is, and with the line of the robot or obstacle that it is about;
+    /// `text` is what the file holds.
+    pub(super) fn in_file(self, file: &str, text: &str) -> Self {
+        let who = if let Self::Invalid { problem, .. } = &self { problem.who() } else { None };
+        let place = lines::place(file, text, who);
+        self.at(&place)
     }
 }
 
@@ -139,6 +158,27 @@ pub enum Problem {
         who: String,
         /// As written, m.
         radius: f64,
+    },
+    /// A speed that is not a positive number.
+    #[error(
+        "max_speed of {who} is {speed} m/s; allowed: above 0, at most {MAX_SPEED} m/s (leave it out for model.max_speed)"
+    )]
+    Speed {
+        /// Robot.
+        who: String,
+        /// As written, m/s.
+        speed: f64,
+    },
+    /// A start or a set-point inside a shape, or nearer to it than the robot is large.
+    #[error(transparent)]
+    Place(PlaceProblem),
+    /// A set-point to which no way leads.
+    #[error("{robot} cannot reach its set-point: {reason}")]
+    Unreachable {
+        /// The robot.
+        robot: String,
+        /// Why not.
+        reason: Box<Unreachable>,
     },
     /// A name used twice.
     #[error("two entries are called `{0}`; give each its own name or leave the names out")]
@@ -193,4 +233,18 @@ pub enum Problem {
         /// Largest move per axis, m.
         spread: f64,
     },
+}
+
+impl Problem {
+    /// The robot or obstacle that it is about, if it is about one; of two the first.
+    pub(super) fn who(&self) -> Option<&str> {
+        match self {
+            Self::Coordinate { who, .. } | Self::Radius { who, .. } | Self::Speed { who, .. } => Some(who),
+            Self::DuplicateName(name) => Some(name),
+            Self::Coincident { a, .. } | Self::CloseStart { a, .. } | Self::CloseSetPoint { a, .. } => Some(a),
+            Self::Unreachable { robot, .. } | Self::NoJitteredStart { robot, .. } => Some(robot),
+            Self::Place(PlaceProblem::Inside { robot, .. } | PlaceProblem::TooNear { robot, .. }) => Some(robot),
+            Self::NoRobots | Self::TooManyRobots(_) | Self::Integer { .. } => None,
+        }
+    }
 }

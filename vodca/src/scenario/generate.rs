@@ -1,11 +1,12 @@
 //! Scenarios of any size by name: rings, random boxes, exchanges of sides, gathering groups, tight places
-//! ([`tight`]) and walls ([`walls`]).
+//! ([`tight`]), walls ([`walls`]) and a hall ([`warehouse`]).
 //!
 //! Coordinates are rounded to 1e-9 m, so that a generated layout and its copy in a file are the same
 //! on every machine.
 
 mod tight;
 mod walls;
+mod warehouse;
 
 use super::file::{obstacle_name, robot_name};
 use super::{DEFAULT_MAX_TICKS, MAX_ROBOTS, Obstacle, Robot, Scenario, ScenarioError};
@@ -15,10 +16,12 @@ use chacha20::ChaCha8Rng;
 use std::f64::consts::PI;
 use tight::{MIXED, PARK, PERMUTE, TIGHT_RING};
 use walls::{CORRIDOR, DOOR, FOREST, POCKET, ROOMS};
+use warehouse::WAREHOUSE;
 
 /// The forms of all generators, for messages.
-pub(super) const FORMS: &[&str] =
-    &[RING, BOX, EXCHANGE, SEGREGATE, PARK, TIGHT_RING, PERMUTE, MIXED, DOOR, POCKET, CORRIDOR, FOREST, ROOMS];
+pub(super) const FORMS: &[&str] = &[
+    RING, BOX, EXCHANGE, SEGREGATE, PARK, TIGHT_RING, PERMUTE, MIXED, DOOR, POCKET, CORRIDOR, FOREST, ROOMS, WAREHOUSE,
+];
 const RING: &str = "ring:N";
 const BOX: &str = "box:N:OBSTACLES:SEED";
 const EXCHANGE: &str = "exchange:N:SEED";
@@ -80,6 +83,7 @@ fn make(form: &str, arguments: &[&str], robots: Option<usize>) -> Result<Scenari
         CORRIDOR => walls::corridor(count()?, seed(1)?),
         FOREST => walls::forest(count()?, seed(1)?),
         ROOMS => walls::rooms(count()?, seed(1)?),
+        WAREHOUSE => warehouse::warehouse(count()?, seed(1)?),
         _ => {
             let text = arguments.first().ok_or("the groups are missing")?;
             let sizes = text.split_once('x').and_then(|(g, s)| Some((g.parse().ok()?, s.parse().ok()?)));
@@ -249,6 +253,7 @@ fn scenario(
                 start: rounded(start),
                 set_point: rounded(set_point),
                 radius: None,
+                max_speed: None,
             })
             .collect(),
         obstacles: obstacles
@@ -256,6 +261,7 @@ fn scenario(
             .enumerate()
             .map(|(i, position)| Obstacle { name: obstacle_name(i), position: rounded(position), radius: None })
             .collect(),
+        shapes: Vec::new(),
         max_ticks,
         seed,
         allow_close_start: false,
@@ -311,7 +317,7 @@ mod tests {
             for form in ["park:16", "park:36", "tight_ring:24", "tight_ring:40", "permute:36", "mixed:16", "pocket:6"] {
                 made(&format!("{form}:{seed}"));
             }
-            for form in ["door:6:3.4", "door:16:5", "corridor:10", "forest:15", "rooms:20"] {
+            for form in ["door:6:3.4", "door:16:5", "corridor:10", "forest:15", "rooms:20", "warehouse:40"] {
                 made(&format!("{form}:{seed}"));
             }
         }

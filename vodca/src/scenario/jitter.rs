@@ -3,6 +3,7 @@
 use super::{Problem, Scenario, ScenarioError};
 use crate::Position;
 use crate::random::{self, Use};
+use world::shape::Obstacles;
 
 /// Draws per robot before the spread counts as too large.
 const ATTEMPTS: usize = 10_000;
@@ -17,6 +18,7 @@ impl Scenario {
     pub fn jittered(&self, spread: f64, min_separation: f64, seed: u64) -> Result<Self, ScenarioError> {
         let mut moved = self.clone();
         let radius = |given: Option<f64>| given.unwrap_or(min_separation / 2.0);
+        let shapes = Obstacles::new(self.shapes.clone());
         for i in 0..self.robots.len() {
             let own = &self.robots[i];
             let clear = |start: Position| {
@@ -26,6 +28,7 @@ impl Scenario {
                 };
                 moved.robots[..i].iter().all(|robot| free(robot.start, robot.radius))
                     && self.obstacles.iter().all(|obstacle| free(obstacle.position, obstacle.radius))
+                    && shapes.nearest(start, if self.allow_close_start { 1e-6 } else { radius(own.radius) }).is_none()
             };
             let mut generator = random::stream(seed, Use::StartJitter, i as u64, 0);
             let mut draw = || spread * (2.0 * random::unit(&mut generator) - 1.0);

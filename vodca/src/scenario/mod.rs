@@ -7,6 +7,7 @@ mod error;
 mod file;
 mod generate;
 mod jitter;
+mod lines;
 mod setup;
 pub mod suite;
 mod validate;
@@ -14,9 +15,12 @@ mod validate;
 pub use builtin::names;
 pub use error::{Problem, ScenarioError};
 pub use setup::{SetupError, set_up};
+/// An obstacle that is no disc of the paper: cut into convex pieces.
+pub use world::shape::Obstacle as Shaped;
 
 use crate::Position;
 use crate::geometry::Disc;
+use crate::obstacles::Obstacles;
 use crate::suggest;
 use std::path::Path;
 
@@ -25,6 +29,9 @@ pub const MAX_ROBOTS: usize = 200;
 
 /// Coordinates and radii beyond this many metres are mistakes.
 pub const MAX_COORDINATE: f64 = 1e6;
+
+/// Largest speed of a robot of its own, m/s: as for `model.max_speed`.
+pub const MAX_SPEED: f64 = 100.0;
 
 /// Episode length K of the paper, used where a scenario does not say.
 pub const DEFAULT_MAX_TICKS: u64 = 350;
@@ -40,6 +47,8 @@ pub struct Robot {
     pub set_point: Position,
     /// Radius of the disc, m; `None`: half of min_separation.
     pub radius: Option<f64>,
+    /// Bound on the input per axis, m/s; `None`: `model.max_speed`.
+    pub max_speed: Option<f64>,
 }
 
 /// A static obstacle (disc).
@@ -60,8 +69,10 @@ pub struct Scenario {
     pub name: String,
     /// The robots, in the order of their numbers.
     pub robots: Vec<Robot>,
-    /// The obstacles.
+    /// The obstacles that are discs.
     pub obstacles: Vec<Obstacle>,
+    /// All others: polygons, walls and the regions of a map. Obstacles are numbered discs first, then these.
+    pub shapes: Vec<Shaped>,
     /// K: a run that has not arrived by then has failed.
     pub max_ticks: u64,
     /// Seed of everything random in this scenario (jitter, noise) unless `--seed` says otherwise.
@@ -102,7 +113,51 @@ impl Scenario {
         self.robots[robot].extra_radius(min_separation)
     }
 
-    /// The obstacles as discs.
+    /// The bound on the input of `robot` per axis, m/s, where it is `usual` for all that have none of their own.
+    pub fn max_speed(&self, robot: usize, usual: f64) -> f64 {
+        self.robots[robot].max_speed.unwrap_or(usual)
+    }
+
+    /// The largest bound of any robot, m/s per axis.
+    pub fn fastest(&self, usual: f64) -> f64 {
+        (0..self.robots.len()).map(|robot| self.max_speed(robot, usual)).fold(0.0, f64::max)
+    }
+
+    /// How many obstacles there are.
+    pub fn obstacle_count(&self) -> usize {
+        self.obstacles.len() + self.shapes.len()
+    }
+
+    /// The name of an obstacle by its number.
+    pub fn obstacle_name(&self, number: usize) -> &str {
+        match self.obstacles.get(number) {
+            Some(disc) => &disc.name,
+            None => self.shapes[number - self.obstacles.len()].name(),
+        }
+    }
+
+    /// Everything that stands: discs and shapes.
+    pub fn standing(&self, min_separation: f64) -> Obstacles {
+        Obstacles::new(&self.discs(min_separation), &self.shapes, min_separation)
+    }
+
+    /// The corners of the smallest upright rectangle round everything that stands and every start and set-point, m.
+    pub fn bounds(&self, min_separation: f64) -> [Position; 2] {
+        let half = Position::repeat(min_separation / 2.0);
+        let ends = self.robots.iter().flat_map(|robot| [robot.start, robot.set_point]);
+        let none = [Position::repeat(f64::INFINITY), Position::repeat(f64::NEG_INFINITY)];
+        let discs = self.obstacles.iter().map(|disc| (disc.position, disc.radius.map_or(half, Position::repeat)));
+        let rings = self.shapes.iter().flat_map(|shape| {
+            let radius = Position::repeat(shape.radius());
+            shape.rings().iter().flatten().map(move |corner| (*corner, radius))
+        });
+        ends.map(|end| (end, half))
+            .chain(discs)
+            .chain(rings)
+            .fold(none, |[low, high], (at, reach)| [low.inf(&(at - reach)), high.sup(&(at + reach))])
+    }
+
+    /// The discs as they are owed separations.
     pub fn discs(&self, min_separation: f64) -> Vec<Disc> {
         self.obstacles
             .iter()

@@ -15,7 +15,7 @@ pub enum SetupError {
 }
 
 /// Finds the scenario ([`Scenario::resolve`]), its effective parameters ([`Params::resolve`]) and checks
-/// the layout's distances with them.
+/// the layout's distances and that ways lead to all set-points with them.
 pub fn set_up(
     spec: Option<&str>,
     robots: Option<usize>,
@@ -26,7 +26,14 @@ pub fn set_up(
     // Errors name the file that the user gave and can correct; its scenario may be called otherwise.
     let place = spec.filter(|spec| is_file(spec)).unwrap_or(&scenario.name);
     let params = Params::resolve(profile, place, &scenario.params, sets)?;
-    scenario.validate_distances(params.model.min_separation).map_err(|error| error.at(place))?;
+    let min_separation = params.model.min_separation;
+    scenario.validate_distances(min_separation).and_then(|()| scenario.validate_ways(min_separation)).map_err(
+        // Its lines, as far as it can be read again.
+        |error| match std::fs::read_to_string(place).ok().filter(|_| spec.is_some_and(is_file)) {
+            Some(text) => error.in_file(place, &text),
+            None => error.at(place),
+        },
+    )?;
     Ok((scenario, params))
 }
 
@@ -46,7 +53,10 @@ mod tests {
         let close = message(&format!("version = 1\nname = \"cross\"\n{}{}", robot(0.0), robot(1.0)));
         let params = message(&format!("version = 1\n{}[params]\nvodca.rws = 1\n", robot(0.0)));
         std::fs::remove_file(&file).unwrap();
-        assert!(close.starts_with(&format!("scenario {path}: robot-0 starts 1.0000 m from robot-1")), "{close}");
+        assert!(
+            close.starts_with(&format!("scenario {path}, line 3: robot-0 starts 1.0000 m from robot-1")),
+            "{close}"
+        );
         assert!(params.starts_with(&format!("scenario {path} [params]: section `vodca` has no")), "{params}");
     }
 

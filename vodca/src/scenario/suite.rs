@@ -23,8 +23,17 @@ pub const TIGHT: &[&str] =
     &["park:16", "park:36", "tight_ring:24", "tight_ring:32", "tight_ring:40", "permute:16", "permute:36", "mixed:16"];
 
 /// Walls, doors and obstacles, likewise.
-pub const WALLS: &[&str] =
-    &["pocket:6", "door:6:3.4", "door:10:3.4", "door:10:5", "door:16:5", "corridor:10", "forest:15", "rooms:20"];
+pub const WALLS: &[&str] = &[
+    "pocket:6",
+    "door:6:3.4",
+    "door:10:3.4",
+    "door:10:5",
+    "door:16:5",
+    "corridor:10",
+    "forest:15",
+    "rooms:20",
+    "warehouse:20",
+];
 
 /// Seeds of the layouts of a generated suite.
 pub const SEEDS: std::ops::Range<u64> = 100..200;
@@ -75,9 +84,9 @@ mod tests {
         assert_eq!(expand("suite:all").unwrap().len(), 88);
         let quick = expand("suite:quick").unwrap();
         assert_eq!(quick.len(), 12);
-        for suite in ["suite:tight", "suite:walls"] {
+        for (suite, families) in [("suite:tight", 8), ("suite:walls", 9)] {
             let all = expand(suite).unwrap();
-            assert_eq!(all.len(), 800);
+            assert_eq!(all.len(), 100 * families);
             for name in all.iter().step_by(33) {
                 Scenario::resolve(Some(name), None).unwrap().validate_distances(1.5).unwrap();
             }

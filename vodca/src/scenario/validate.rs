@@ -1,7 +1,11 @@
 //! What a layout must satisfy before it is run.
 
-use super::{MAX_COORDINATE, MAX_ROBOTS, Problem, Scenario, ScenarioError};
+use super::{MAX_COORDINATE, MAX_ROBOTS, MAX_SPEED, Problem, Scenario, ScenarioError};
 use crate::Position;
+use std::sync::Arc;
+use world::check::{self, PlaceProblem};
+use world::route::{Roadmap, Route, Unreachable};
+use world::shape::Obstacles;
 
 /// Rounding allowance on distances, m: layouts that touch on purpose are accepted.
 const TOLERANCE: f64 = 1e-9;
@@ -25,6 +29,12 @@ impl Scenario {
         self.find_overlap(min_separation).map_err(|problem| self.invalid(problem))
     }
 
+    /// Checks that a way leads every robot to its set-point past all that stands, for its own radius, as if it were
+    /// alone. Takes a roadmap for each radius.
+    pub fn validate_ways(&self, min_separation: f64) -> Result<(), ScenarioError> {
+        self.find_closed_way(min_separation).map_err(|problem| self.invalid(problem))
+    }
+
     pub(super) fn invalid(&self, problem: Problem) -> ScenarioError {
         ScenarioError::Invalid { scenario: self.name.clone(), problem }
     }
@@ -42,13 +52,16 @@ impl Scenario {
             coordinate(&robot.name, "start", robot.start)?;
             coordinate(&robot.name, "set_point", robot.set_point)?;
             check_radius(&robot.name, robot.radius)?;
+            if let Some(speed) = robot.max_speed.filter(|speed| !(*speed > 0.0 && *speed <= MAX_SPEED)) {
+                return Err(Problem::Speed { who: robot.name.clone(), speed });
+            }
         }
         for obstacle in &self.obstacles {
             coordinate(&obstacle.name, "position", obstacle.position)?;
             check_radius(&obstacle.name, obstacle.radius)?;
         }
         let mut names: Vec<&str> = self.robots.iter().map(|robot| robot.name.as_str()).collect();
-        names.extend(self.obstacles.iter().map(|obstacle| obstacle.name.as_str()));
+        names.extend((0..self.obstacle_count()).map(|number| self.obstacle_name(number)));
         names.sort_unstable();
         match names.windows(2).find(|pair| pair[0] == pair[1]) {
             Some(pair) => Err(Problem::DuplicateName(pair[0].into())),
@@ -58,6 +71,7 @@ impl Scenario {
 
     fn find_overlap(&self, min_separation: f64) -> Result<(), Problem> {
         let radius = |given: Option<f64>| given.unwrap_or(min_separation / 2.0);
+        let shapes = Obstacles::new(self.shapes.clone());
         for (i, a) in self.robots.iter().enumerate() {
             for b in &self.robots[i + 1..] {
                 let needed = radius(a.radius) + radius(b.radius);
@@ -75,6 +89,35 @@ impl Scenario {
                 if distance < needed - TOLERANCE {
                     let b = obstacle.name.clone();
                     return Err(Problem::CloseSetPoint { a: a.name.clone(), b, distance, needed });
+                }
+            }
+            let place = |what, at| check::place(&shapes, &a.name, what, at, radius(a.radius));
+            match place("start", a.start) {
+                // Nearer than owed, but outside: out of there the way is known.
+                Err(PlaceProblem::TooNear { .. }) if self.allow_close_start => {}
+                other => other.map_err(Problem::Place)?,
+            }
+            place("set-point", a.set_point).map_err(Problem::Place)?;
+        }
+        Ok(())
+    }
+
+    fn find_closed_way(&self, min_separation: f64) -> Result<(), Problem> {
+        let all = self.standing(min_separation);
+        let mut maps: Vec<Arc<Roadmap>> = Vec::new();
+        for robot in self.robots.iter().filter(|_| all.count() > 0) {
+            let clearance = robot.radius.unwrap_or(min_separation / 2.0);
+            let known = maps.iter().find(|map| map.clearance() == clearance).cloned();
+            let map = known.unwrap_or_else(|| {
+                let map = Arc::new(Roadmap::new(all.all().clone(), clearance));
+                maps.push(map.clone());
+                map
+            });
+            match Route::new(map, robot.set_point).and_then(|route| route.reach(robot.start)) {
+                // Distances were checked before, with less room for rounding.
+                Ok(_) | Err(Unreachable::Place(_)) => {}
+                Err(reason) => {
+                    return Err(Problem::Unreachable { robot: robot.name.clone(), reason: Box::new(reason) });
                 }
             }
         }
@@ -153,6 +196,7 @@ mod tests {
     #[test]
     fn counts_outside_their_limits_are_refused() {
         assert_names(&after(|s| s.robots.clear()), &["no robots", "[[robot]]"]);
+        assert_names(&after(|s| s.robots[0].max_speed = Some(0.0)), &["max_speed of robot-0 is 0 m/s", "above 0"]);
         let many = after(|s| {
             let robot = s.robots[0].clone();
             s.robots = vec![robot; 201];
@@ -195,6 +239,63 @@ mod tests {
             s.obstacles.push(Obstacle { name: "late".into(), position, radius: None });
         });
         assert_names(&obstacle, &["the set-point of robot-0 is 1.0000 m from late"]);
+    }
+
+    /// `four_gate` with an obstacle of the given corners.
+    fn with_polygon(corners: &[(f64, f64)]) -> Scenario {
+        use world::shape::{Obstacle, Shape};
+        let corners = corners.iter().map(|(x, y)| Position::new(*x, *y)).collect();
+        let shapes = vec![Obstacle::new("shelf", Shape::Polygon(corners)).unwrap()];
+        Scenario { shapes, ..good() }
+    }
+
+    #[test]
+    fn robots_inside_a_shape_or_too_near_to_it_are_refused() {
+        let start = good().robots[0].start;
+        let square = |x: f64, half: f64| {
+            let y = start.y;
+            with_polygon(&[(x - half, y - half), (x + half, y - half), (x + half, y + half), (x - half, y + half)])
+        };
+        let message = |scenario: &Scenario| scenario.validate_distances(1.5).unwrap_err().to_string();
+        assert_names(&message(&square(start.x, 0.3)), &["start of robot-0", "lies inside shelf (0.3000 m deep)"]);
+        let mut near = square(start.x - 1.0, 0.3);
+        near.robots.truncate(1);
+        assert_names(&message(&near), &["start of robot-0", "is 0.7000 m from shelf", "0.7500 m"]);
+        near.allow_close_start = true;
+        near.validate_distances(1.5).unwrap();
+        near.robots[0].radius = Some(0.7);
+        near.allow_close_start = false;
+        near.validate_distances(1.5).unwrap();
+    }
+
+    #[test]
+    fn a_set_point_that_is_shut_in_is_found_before_the_run_with_the_reason() {
+        let goal = good().robots[0].set_point;
+        let at = |x: f64, y: f64| (goal.x + x, goal.y + y);
+        // A C round the set-point that is open by 1.2 m to the right.
+        let shut = with_polygon(&[
+            at(2.0, 0.6),
+            at(2.0, 2.0),
+            at(-2.0, 2.0),
+            at(-2.0, -2.0),
+            at(2.0, -2.0),
+            at(2.0, -0.6),
+            at(1.8, -0.6),
+            at(1.8, -1.8),
+            at(-1.8, -1.8),
+            at(-1.8, 1.8),
+            at(1.8, 1.8),
+            at(1.8, 0.6),
+        ]);
+        let mut one = shut.clone();
+        one.robots.truncate(1);
+        let message = one.validate_ways(1.5).unwrap_err().to_string();
+        assert_names(
+            &message,
+            &["robot-0 cannot reach its set-point", "1.200 m wide, between shelf and shelf", "1.500 m"],
+        );
+        one.robots[0].radius = Some(0.55);
+        one.validate_ways(1.5).unwrap();
     }
 
     #[test]

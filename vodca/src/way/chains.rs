@@ -1,7 +1,19 @@
-//! Closed chains of overlapping discs: whether they separate two places.
+//! Closed chains of overlapping discs and pieces: whether they separate two places.
 
 use super::corners::Closed;
+use super::ground::Ground;
 use crate::Position;
+
+/// Two parts of a [`Ground`] between which no robot fits.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Overlap {
+    /// The number of the one.
+    pub(super) a: usize,
+    /// The number of the other.
+    pub(super) b: usize,
+    /// A place that is in both, m; none where the line from middle to middle lies within both.
+    pub(super) via: Option<Position>,
+}
 
 /// Chains of discs (union and find), each disc with the parity of the crossings on the way to its chain's first disc.
 #[derive(Clone, Debug, Default)]
@@ -11,22 +23,43 @@ pub(super) struct Chains {
 }
 
 impl Chains {
-    /// Room for `discs`.
-    pub(super) fn with_capacity(discs: usize) -> Self {
-        Self { first: Vec::with_capacity(discs), odd: Vec::with_capacity(discs) }
+    /// Room for so many discs and parts.
+    pub(super) fn with_capacity(count: usize) -> Self {
+        Self { first: Vec::with_capacity(count), odd: Vec::with_capacity(count) }
     }
 
-    /// Whether `discs` close every way between two places outside of them. They do exactly where a closed chain of
-    /// overlapping discs runs round one place and not the other, and such a chain crosses the straight line between
-    /// them an odd number of times: the line joining the centres of two overlapping discs lies within both.
-    pub(super) fn separate(&mut self, discs: &[Closed], from: Position, to: Position) -> bool {
+    /// Whether `discs` and the ground close every way between two places outside of them. They do exactly where a closed
+    /// chain of overlapping ones runs round one place and not the other, and such a chain crosses the straight line
+    /// between them an odd number of times. All are convex: a line from the middle of one to that of another that
+    /// overlaps with it, by way of a place in both, lies within both, and every closed chain within their union can be
+    /// drawn together to such lines (the nerve of a cover by convex sets has the union's cycles).
+    pub(super) fn separate(&mut self, discs: &[Closed], ground: &Ground, from: Position, to: Position) -> bool {
+        let count = discs.len() + ground.parts();
         self.first.clear();
-        self.first.extend(0..discs.len());
+        self.first.extend(0..count);
         self.odd.clear();
-        self.odd.resize(discs.len(), false);
-        (0..discs.len()).any(|a| {
-            (0..a).any(|b| {
-                overlap(&discs[a], &discs[b]) && !self.link(a, b, crosses(from, to, discs[a].centre, discs[b].centre))
+        self.odd.resize(count, false);
+        let crosses = |a: Position, via: Option<Position>, b: Position| match via {
+            Some(via) => crosses(from, to, a, via) ^ crosses(from, to, via, b),
+            None => crosses(from, to, a, b),
+        };
+        let part = |number: usize| discs.len() + number;
+        for (a, disc) in discs.iter().enumerate() {
+            for (b, other) in discs[..a].iter().enumerate() {
+                if overlap(disc, other) && !self.link(a, b, crosses(disc.centre, None, other.centre)) {
+                    return true;
+                }
+            }
+        }
+        for &Overlap { a, b, via } in ground.overlaps() {
+            if !self.link(part(a), part(b), crosses(ground.middle(a), via, ground.middle(b))) {
+                return true;
+            }
+        }
+        (0..ground.parts()).any(|number| {
+            discs.iter().enumerate().any(|(a, disc)| match ground.meets(number, disc) {
+                Some(via) => !self.link(part(number), a, crosses(ground.middle(number), via, disc.centre)),
+                None => false,
             })
         })
     }
@@ -53,13 +86,13 @@ impl Chains {
 }
 
 /// Whether a robot does not fit between two discs; discs that touch leave it just enough.
-fn overlap(a: &Closed, b: &Closed) -> bool {
+pub(super) fn overlap(a: &Closed, b: &Closed) -> bool {
     const ROUNDING: f64 = 1e-6;
     (a.centre - b.centre).norm() < a.radius + b.radius - ROUNDING
 }
 
 /// Whether two straight lines cross.
-fn crosses(from: Position, to: Position, a: Position, b: Position) -> bool {
+pub(super) fn crosses(from: Position, to: Position, a: Position, b: Position) -> bool {
     let side = |from: Position, to: Position, at: Position| {
         let (way, off) = (to - from, at - from);
         way.x * off.y - way.y * off.x > 0.0
@@ -81,12 +114,39 @@ mod tests {
     fn a_ring_separates_inside_from_outside_and_one_with_a_gap_does_not() {
         let (inside, outside) = (Position::new(0.1, 0.2), Position::new(9.0, 3.0));
         let closed = ring(12, 4.0);
+        let (mut chains, nothing) = (Chains::default(), Ground::of_discs(&[], 1.5));
+        assert!(chains.separate(&closed, &nothing, inside, outside));
+        assert!(!chains.separate(&closed, &nothing, outside, Position::new(-9.0, 1.0)));
+        assert!(!chains.separate(&closed, &nothing, inside, Position::new(0.5, -0.4)));
+        assert!(!chains.separate(&closed[..11], &nothing, inside, outside), "4.1 m are enough for a robot");
+        assert!(
+            !chains.separate(&ring(6, 3.0), &nothing, inside, outside),
+            "discs that only touch let a robot through"
+        );
+    }
+
+    /// Walls of a box from (0, 0) to (12, 12) with a door of `width` (m) in the right one, for robots of clearance 0.75.
+    fn room(width: f64) -> Ground {
+        use crate::obstacles::Obstacles;
+        use world::shape::{Obstacle, Shape};
+        let jambs =
+            [(12.0, 6.0 + width / 2.0), (12.0, 12.0), (0.0, 12.0), (0.0, 0.0), (12.0, 0.0), (12.0, 6.0 - width / 2.0)];
+        let points = jambs.map(|(x, y)| Position::new(x, y)).to_vec();
+        let wall = Obstacle::new("wall", Shape::Wall { points, thickness: 1e-3 }).unwrap();
+        Ground::new(&Obstacles::new(&[], &[wall], 1.5), &[], 1.5)
+    }
+
+    #[test]
+    fn a_room_is_shut_by_a_narrow_door_or_by_who_stands_in_a_wide_one() {
+        let (inside, outside) = (Position::new(5.0, 4.0), Position::new(30.0, 17.0));
         let mut chains = Chains::default();
-        assert!(chains.separate(&closed, inside, outside));
-        assert!(!chains.separate(&closed, outside, Position::new(-9.0, 1.0)));
-        assert!(!chains.separate(&closed, inside, Position::new(0.5, -0.4)));
-        assert!(!chains.separate(&closed[..11], inside, outside), "4.1 m are enough for a robot");
-        assert!(!chains.separate(&ring(6, 3.0), inside, outside), "discs that only touch let a robot through");
+        assert!(chains.separate(&[], &room(1.49), inside, outside));
+        assert!(!chains.separate(&[], &room(1.52), inside, outside));
+        let stands = |y: f64| Closed { centre: Position::new(12.0, y), radius: 1.5 };
+        assert!(chains.separate(&[stands(6.0)], &room(4.4), inside, outside));
+        assert!(!chains.separate(&[stands(6.0)], &room(4.6), inside, outside));
+        assert!(!chains.separate(&[stands(5.0)], &room(4.6), outside, Position::new(30.0, -7.0)));
+        assert!(!chains.separate(&[stands(6.0)], &room(4.4), inside, Position::new(3.0, 9.0)));
     }
 
     proptest! {
@@ -114,7 +174,7 @@ mod tests {
                 queue.retain(|&cell| open(cell) && !seen[cell]);
             }
             if seen[middle] {
-                prop_assert!(!Chains::default().separate(&discs, at(middle), at(start)));
+                prop_assert!(!Chains::default().separate(&discs, &Ground::of_discs(&[], 1.5), at(middle), at(start)));
             }
         }
     }

@@ -5,9 +5,11 @@
 //! from the last layer to the first, every set-point is open when its turn comes.
 
 use super::chains::Chains;
-use super::corners::Closed;
+use super::corners::{Closed, Corners};
+use super::ground::Ground;
 use crate::Position;
 use crate::geometry::Disc;
+use std::sync::Arc;
 
 /// Farther than any layout reaches, m.
 const FAR: f64 = 1e7;
@@ -24,14 +26,20 @@ pub struct Filling {
 }
 
 impl Filling {
-    /// The turns of robots that come to stand at `places` (set-points, with radii beyond min_separation / 2) among
-    /// `obstacles`.
-    pub fn new(places: &[Disc], obstacles: &[Disc], min_separation: f64) -> Self {
-        let layers = layers(places, obstacles, min_separation);
+    /// The turns of robots that come to stand at `places` (set-points, with radii beyond min_separation / 2) among what
+    /// stands for each of them, by `corners`.
+    pub(super) fn new(places: &[Disc], corners: &[Arc<Corners>], min_separation: f64) -> Self {
+        let grounds: Vec<&Ground> = corners.iter().map(|corners| &corners.ground).collect();
+        Self::among(places, &grounds, min_separation)
+    }
+
+    fn among(places: &[Disc], grounds: &[&Ground], min_separation: f64) -> Self {
+        let layers = layers(places, grounds, min_separation);
         let groups = groups(places, min_separation);
         let mut filling = Self { turn: groups.into_iter().zip(layers).collect(), outside: Vec::new() };
-        filling.outside =
-            (0..places.len()).map(|robot| filling.waiting_place(robot, places, obstacles, min_separation)).collect();
+        filling.outside = (0..places.len())
+            .map(|robot| filling.waiting_place(robot, places, grounds[robot], min_separation))
+            .collect();
         filling
     }
 
@@ -43,7 +51,7 @@ impl Filling {
 
     /// Straight away from those who come before until a lane as wide as a robot is left all round the group, and
     /// one more for each layer in between; as far as no obstacle is in the way.
-    fn waiting_place(&self, robot: usize, places: &[Disc], obstacles: &[Disc], min_separation: f64) -> Position {
+    fn waiting_place(&self, robot: usize, places: &[Disc], ground: &Ground, min_separation: f64) -> Position {
         let own = places[robot];
         let owed = |disc: &Disc| min_separation + own.extra + disc.extra;
         let group = || (0..places.len()).filter(|&other| other != robot && self.turn[other].0 == self.turn[robot].0);
@@ -55,9 +63,8 @@ impl Filling {
         let lanes = (1 + deepest - self.turn[robot].1) as f64;
         let far =
             |at: Position| group().all(|other| (at - places[other].centre).norm() >= lanes * owed(&places[other]));
-        let free = |at: Position| obstacles.iter().all(|disc| (at - disc.centre).norm() >= owed(disc));
         let mut at = own.centre;
-        while !far(at) && free(at + step) {
+        while !far(at) && ground.keeps(at + step) {
             at += step;
         }
         at
@@ -65,7 +72,7 @@ impl Filling {
 }
 
 /// The layer of each place, 1 for the open ones. Those that never become open are of the last one.
-fn layers(places: &[Disc], obstacles: &[Disc], min_separation: f64) -> Vec<usize> {
+fn layers(places: &[Disc], grounds: &[&Ground], min_separation: f64) -> Vec<usize> {
     let mut layers = vec![0; places.len()];
     let (mut chains, mut closed) = (Chains::default(), Vec::new());
     for layer in 1.. {
@@ -77,14 +84,11 @@ fn layers(places: &[Disc], obstacles: &[Disc], min_separation: f64) -> Vec<usize
                 let own = places[robot];
                 let others = left.iter().filter(|&&other| other != robot).map(|&other| &places[other]);
                 closed.clear();
-                closed.extend(
-                    others
-                        .chain(obstacles)
-                        .map(|disc| Closed { centre: disc.centre, radius: min_separation + own.extra + disc.extra }),
-                );
+                let owed = |disc: &Disc| min_separation + own.extra + disc.extra;
+                closed.extend(others.map(|disc| Closed { centre: disc.centre, radius: owed(disc) }));
                 // In a direction that no grid has.
                 let far = own.centre + Position::new(1f64.cos(), 1f64.sin()) * FAR;
-                !chains.separate(&closed, own.centre, far)
+                !chains.separate(&closed, grounds[robot], own.centre, far)
             })
             .collect();
         let peeled = if open.is_empty() { &left } else { &open };
@@ -121,19 +125,25 @@ mod tests {
         (0..columns * columns).map(|place| Disc { centre: at(place), extra: 0.0 }).collect()
     }
 
+    fn among(places: &[Disc], obstacles: &[Disc]) -> Filling {
+        let ground = Ground::of_discs(obstacles, 1.5);
+        Filling::among(places, &vec![&ground; places.len()], 1.5)
+    }
+
     #[test]
     fn a_square_of_places_is_filled_from_its_middle() {
-        let layers = layers(&grid(6, 1.55), &[], 1.5);
+        let ground = Ground::of_discs(&[], 1.5);
+        let layers = layers(&grid(6, 1.55), &[&ground; 36], 1.5);
         let of = |layer: usize| layers.iter().filter(|own| **own == layer).count();
         assert_eq!((of(1), of(2), of(3)), (20, 12, 4));
-        let filling = Filling::new(&grid(6, 1.55), &[], 1.5);
+        let filling = among(&grid(6, 1.55), &[]);
         assert!(filling.waits(0, 14) && !filling.waits(14, 0) && !filling.waits(0, 5));
         assert_eq!(filling.outside[14], grid(6, 1.55)[14].centre, "the deepest wait for nobody");
     }
 
     #[test]
     fn who_can_be_passed_waits_for_nobody() {
-        let filling = Filling::new(&grid(5, 3.0), &[], 1.5);
+        let filling = among(&grid(5, 3.0), &[]);
         assert!((0..25).all(|robot| (0..25).all(|other| !filling.waits(robot, other))));
     }
 
@@ -143,7 +153,7 @@ mod tests {
         let alley: Vec<Disc> = (0..8).flat_map(|x| [wall(1.5 * x as f64, 1.6), wall(1.5 * x as f64, -1.6)]).collect();
         let end = [wall(11.6, 0.8), wall(11.6, -0.8)];
         let places = [wall(3.0, 0.0), wall(5.0, 0.0), wall(7.0, 0.0)];
-        let filling = Filling::new(&places, &[&alley[..], &end[..]].concat(), 1.5);
+        let filling = among(&places, &[&alley[..], &end[..]].concat());
         assert!(filling.waits(0, 1) && filling.waits(1, 2) && filling.waits(0, 2));
     }
 
@@ -160,14 +170,15 @@ mod tests {
                     apart.push(Disc { centre, extra: 0.0 });
                 }
             }
-            let layers = layers(&apart, &[], 1.5);
+            let ground = Ground::of_discs(&[], 1.5);
+            let layers = layers(&apart, &vec![&ground; apart.len()], 1.5);
             for robot in 0..apart.len() {
                 let stand: Vec<Closed> = (0..apart.len())
                     .filter(|&other| other != robot && layers[other] >= layers[robot])
                     .map(|other| Closed { centre: apart[other].centre, radius: 1.5 })
                     .collect();
                 let far = apart[robot].centre + Position::new(1f64.cos(), 1f64.sin()) * FAR;
-                prop_assert!(!Chains::default().separate(&stand, apart[robot].centre, far));
+                prop_assert!(!Chains::default().separate(&stand, &ground, apart[robot].centre, far));
             }
         }
     }

@@ -6,6 +6,7 @@
 mod chains;
 mod corners;
 mod filling;
+mod ground;
 mod lower_bound;
 mod path;
 pub mod right_of_way;
@@ -19,3 +20,32 @@ pub use path::Path;
 pub use robot_set::RobotSet;
 pub use route::{Rest, Route};
 pub use standing::Standing;
+
+use crate::Position;
+use crate::geometry::Disc;
+use crate::obstacles::Obstacles;
+use corners::Corners;
+
+/// The ways of a team.
+#[derive(Clone, Debug)]
+pub struct Ways {
+    /// To the set-points, by robot.
+    pub routes: Vec<Route>,
+    /// To where a robot waits for its turn, by robot.
+    pub outside: Vec<Route>,
+    /// Whose turn comes before whose.
+    pub filling: Filling,
+}
+
+impl Ways {
+    /// The ways to `places` (set-points, with their robots' radii beyond min_separation / 2) past `obstacles`;
+    /// `separations` are what each robot owes a disc of radius min_separation / 2, m.
+    pub fn new(places: &[Disc], separations: &[f64], obstacles: &Obstacles, min_separation: f64) -> Self {
+        let corners = Corners::of_team(separations, places, obstacles);
+        let filling = Filling::new(places, &corners, min_separation);
+        let ends: Vec<Position> = places.iter().map(|place| place.centre).collect();
+        let routes = Route::of_team(&ends, separations, &corners);
+        let outside = Route::of_team(&filling.outside, separations, &corners);
+        Self { routes, outside, filling }
+    }
+}

@@ -83,7 +83,11 @@ pub fn regard_others(
                 // Only whom those who stand shut in together.
                 let seen = View { position: from, ..*view };
                 standing.look(params, layout, other, &seen);
-                if standing.shuts_in(from, neighbour.set_point) { Regard::Wish } else { Regard::Stays }
+                if standing.shuts_in(&layout.routes[other], from, neighbour.set_point) {
+                    Regard::Wish
+                } else {
+                    Regard::Stays
+                }
             }
             Some((_, from)) if gives_way && (neighbour.set_point - from).norm() > way => {
                 if params.mpc.reference == Reference::Route && layout.filling.waits(other, robot) && turn {

@@ -1,10 +1,10 @@
 //! The shortest ways of one robot round what stands, from anywhere to its set-point.
 
-use super::corners::{Closed, Corners, between, is_free};
+use super::corners::{Closed, Corners, Leg, between};
+use super::ground::Ground;
 use super::path::{Path, REACHED};
-use super::robot_set::{MOST_STANDING, RobotSet};
+use super::robot_set::RobotSet;
 use crate::Position;
-use crate::geometry::Disc;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
@@ -55,40 +55,20 @@ impl Rest {
 }
 
 impl Route {
-    /// The routes of a team past its obstacles, once for each of the `ends` (m, by robot). `separations` (what each
-    /// robot owes a disc of radius min_separation / 2, m) are by robot; `places` are the set-points, where robots come
-    /// to stand.
-    pub fn of_team<const K: usize>(
-        ends: [&[Position]; K],
-        separations: &[f64],
-        places: &[Disc],
-        obstacles: &[Disc],
-    ) -> [Vec<Self>; K] {
-        let places = if places.len() <= MOST_STANDING { places } else { &[] };
-        let mut sizes: Vec<(f64, Arc<Corners>)> = Vec::new();
-        let corners: Vec<Arc<Corners>> = separations
-            .iter()
-            .map(|separation| {
-                let known = sizes.iter().find(|(size, _)| size == separation).map(|(_, corners)| corners.clone());
-                known.unwrap_or_else(|| {
-                    let corners = Arc::new(Corners::new(obstacles, places, *separation));
-                    sizes.push((*separation, corners.clone()));
-                    corners
-                })
-            })
-            .collect();
+    /// The routes of a team to `ends` (m, by robot), each past what `corners` are round for its robot.
+    pub(super) fn of_team(ends: &[Position], separations: &[f64], corners: &[Arc<Corners>]) -> Vec<Self> {
         let route =
             |(robot, end): (usize, &Position)| Self::new(robot, *end, separations[robot], corners[robot].clone());
-        ends.map(|ends| ends.iter().enumerate().map(route).collect())
+        ends.iter().enumerate().map(route).collect()
     }
 
     fn new(robot: usize, set_point: Position, separation: f64, corners: Arc<Corners>) -> Self {
-        let Corners { closed, places, at, .. } = &*corners;
+        let Corners { ground, places, at, .. } = &*corners;
         let sees = |to: Position| {
-            at.iter().map(|from| is_free(closed, *from, to).then(|| between_but(places, robot, *from, to))).collect()
+            at.iter().map(|from| ground.is_free(*from, to).then(|| between_but(places, robot, *from, to))).collect()
         };
         let reach = 2.0 * places.get(robot).map_or(separation, |own| own.radius);
-        let entry = entry(closed, places, robot, set_point, reach);
+        let entry = entry(ground, places, robot, set_point, reach);
         let (sees_end, sees_entry) = (sees(set_point), sees(entry));
         let mut route =
             Self { set_point, corners: corners.clone(), sees_end, entry, sees_entry, alone: Rest::default() };
@@ -100,20 +80,21 @@ impl Route {
 
     /// Shortest ways from every corner while `standing` are in the way (Dijkstra 1959).
     fn walk_back(&self, standing: RobotSet, rest: &mut Rest) {
-        let Corners { at, fixed, seen, .. } = &*self.corners;
+        let Corners { ground, at, fixed, seen, .. } = &*self.corners;
         let Rest { left, next, open, .. } = rest;
         let used = if standing.is_empty() { *fixed } else { at.len() };
         let clear = |between: &Option<RobotSet>| between.is_some_and(|between| !between.meets(&standing));
-        let last = (self.set_point - self.entry).norm();
+        let cost = |from: Position, to: Position| (to - from).norm() + ground.toll(from, to);
+        let last = cost(self.entry, self.set_point);
         for (corner, (left, next)) in left.iter_mut().zip(next.iter_mut()).enumerate() {
             *next = Next::End;
             *left = if corner >= used {
                 f64::INFINITY
             } else if clear(&self.sees_end[corner]) {
-                (self.set_point - at[corner]).norm()
+                cost(at[corner], self.set_point)
             } else if clear(&self.sees_entry[corner]) {
                 *next = Next::Entry;
-                (self.entry - at[corner]).norm() + last
+                cost(at[corner], self.entry) + last
             } else {
                 f64::INFINITY
             };
@@ -125,16 +106,21 @@ impl Route {
             if left[corner].is_infinite() {
                 break;
             }
-            for (other, between) in &seen[corner] {
-                if *other < used && !between.meets(&standing) {
-                    let way = left[corner] + (at[*other] - at[corner]).norm();
-                    if way < left[*other] {
-                        (left[*other], next[*other]) = (way, Next::Corner(corner));
+            for Leg { to, between, toll } in &seen[corner] {
+                if *to < used && !between.meets(&standing) {
+                    let way = left[corner] + (at[*to] - at[corner]).norm() + toll;
+                    if way < left[*to] {
+                        (left[*to], next[*to]) = (way, Next::Corner(corner));
                     }
                 }
             }
         }
         rest.standing = standing;
+    }
+
+    /// What never moves, for its robot.
+    pub(super) fn ground(&self) -> &Ground {
+        &self.corners.ground
     }
 
     /// Where it ends, m.
@@ -150,11 +136,16 @@ impl Route {
 
     /// The shortest way from `from` while nobody stands.
     pub fn path(&self, from: Position) -> Path {
+        let ground = &self.corners.ground;
         let straight = Path::straight(from, self.set_point);
-        if is_free(&self.corners.closed, from, self.set_point) {
-            return straight;
+        if !ground.is_free(from, self.set_point) {
+            return self.path_past(from, RobotSet::default(), &self.alone).unwrap_or(straight);
         }
-        self.path_past(from, RobotSet::default(), &self.alone).unwrap_or(straight)
+        let toll = ground.toll(from, self.set_point);
+        let straight = straight.of_length(straight.length + toll);
+        let round =
+            || self.path_past(from, RobotSet::default(), &self.alone).filter(|round| round.length < straight.length);
+        if toll > 0.0 { round().unwrap_or(straight) } else { straight }
     }
 
     /// The same round those of `standing` who are in the way; as if they were not there where no way leads
@@ -196,17 +187,18 @@ impl Route {
     }
 
     fn shortest(&self, from: Position, alone: Path, standing: RobotSet, rest: &mut Rest) -> Path {
-        let Corners { closed, places, .. } = &*self.corners;
+        let Corners { ground, places, .. } = &*self.corners;
         let is_clear =
             |from: Position, to: Position| standing.is_empty() || !between(places, from, to).meets(&standing);
         if standing.is_empty() || self.is_clear(from, &alone, standing) {
             return alone;
         }
         let mut best: Option<Path> = None;
-        if is_free(closed, from, self.entry) && is_clear(from, self.entry) {
+        if ground.is_free(from, self.entry) && is_clear(from, self.entry) {
             let mut through = Path::straight(from, self.entry);
             through.push(self.set_point);
             through.length += (self.set_point - self.entry).norm();
+            through.length += ground.toll(from, self.entry) + ground.toll(self.entry, self.set_point);
             best = Some(through);
         }
         if rest.standing != standing {
@@ -227,17 +219,24 @@ impl Route {
     }
 
     fn path_past(&self, from: Position, standing: RobotSet, rest: &Rest) -> Option<Path> {
-        let Corners { closed, places, at, .. } = &*self.corners;
+        let Corners { ground, places, at, .. } = &*self.corners;
+        // A roadmap knows at which of its corners a taut way may bend: most need no closer look.
+        let map = ground.roadmap().filter(|map| map.is_outside(from));
+        let may_bend = |corner| map.is_none_or(|map| corner >= map.corners().len() || map.may_bend(from, corner));
         let (mut first, mut shortest) = (None, f64::INFINITY);
         for (corner, (place, left)) in at.iter().zip(&rest.left).enumerate() {
             let near = (place - from).norm();
             let way = near + left;
             let free = || {
-                is_free(closed, from, *place)
+                may_bend(corner)
+                    && ground.is_free(from, *place)
                     && (standing.is_empty() || !between(places, from, *place).meets(&standing))
             };
-            if near > REACHED && way < shortest && free() {
-                (first, shortest) = (Some(corner), way);
+            if near > REACHED && way < shortest {
+                let way = way + ground.toll(from, *place);
+                if way < shortest && free() {
+                    (first, shortest) = (Some(corner), way);
+                }
             }
         }
         let mut corner = first?;
@@ -269,11 +268,11 @@ fn between_but(places: &[Closed], robot: usize, from: Position, to: Position) ->
 
 /// The place `reach` (two separations, m) before the set-point of `robot` from where it gets in between all others
 /// with the most room.
-fn entry(closed: &[Closed], places: &[Closed], robot: usize, set_point: Position, reach: f64) -> Position {
+fn entry(ground: &Ground, places: &[Closed], robot: usize, set_point: Position, reach: f64) -> Position {
     const DIRECTIONS: usize = 128;
     let others = || {
         let places = places.iter().enumerate().filter(|(other, _)| *other != robot).map(|(_, place)| place);
-        closed.iter().chain(places).filter(|disc| (disc.centre - set_point).norm() < 3.0 * disc.radius)
+        ground.discs().iter().chain(places).filter(|disc| (disc.centre - set_point).norm() < 3.0 * disc.radius)
     };
     let room = |to: Position| {
         let way = to - set_point;
@@ -282,7 +281,7 @@ fn entry(closed: &[Closed], places: &[Closed], robot: usize, set_point: Position
             (set_point + way * along - disc.centre).norm() - disc.radius
         };
         let ahead = |disc: &Closed| (set_point + way * 0.5 - disc.centre).norm() - disc.radius;
-        let narrowest = others().map(left).fold(f64::INFINITY, f64::min);
+        let narrowest = others().map(left).fold(ground.room(set_point, to, 3.0 * reach), f64::min);
         // Where it is as narrow at the set-point itself whatever the direction, what opens most.
         narrowest.min(1.0) + 1e-3 * others().map(ahead).fold(f64::INFINITY, f64::min).min(1.0)
     };
@@ -301,7 +300,14 @@ fn entry(closed: &[Closed], places: &[Closed], robot: usize, set_point: Position
 mod tests {
     use super::super::corners::CUT;
     use super::*;
+    use crate::geometry::Disc;
+    use crate::obstacles::Obstacles;
     use proptest::prelude::*;
+
+    fn team(ends: &[Position], separations: &[f64], places: &[Disc], discs: &[Disc]) -> Vec<Route> {
+        let corners = Corners::of_team(separations, places, &Obstacles::new(discs, &[], 1.5));
+        Route::of_team(ends, separations, &corners)
+    }
 
     fn place((x, y): (f64, f64)) -> Disc {
         Disc { centre: Position::new(x, y), extra: 0.0 }
@@ -310,7 +316,7 @@ mod tests {
     fn route(set_point: (f64, f64), obstacles: &[(f64, f64)]) -> Route {
         let discs: Vec<Disc> =
             obstacles.iter().map(|(x, y)| Disc { centre: Position::new(*x, *y), extra: 0.0 }).collect();
-        Route::of_team([&[Position::new(set_point.0, set_point.1)]], &[1.5], &[place(set_point)], &discs)[0].remove(0)
+        team(&[Position::new(set_point.0, set_point.1)], &[1.5], &[place(set_point)], &discs).remove(0)
     }
 
     /// Walks along the aim in small steps: (arrived, length of the way, least distance to an obstacle).
@@ -318,7 +324,7 @@ mod tests {
         const STEP: f64 = 0.02;
         let (mut here, mut length, mut least) = (Position::new(from.0, from.1), 0.0, f64::INFINITY);
         for _ in 0..10_000 {
-            least = route.corners.closed.iter().map(|disc| (here - disc.centre).norm()).fold(least, f64::min);
+            least = route.corners.ground.discs().iter().map(|disc| (here - disc.centre).norm()).fold(least, f64::min);
             let rest = route.set_point - here;
             if rest.norm() <= STEP {
                 return (true, length + rest.norm(), least);
@@ -356,7 +362,7 @@ mod tests {
     fn who_stands_is_walked_round_where_that_is_cheaper_than_pushing() {
         let ends = [Position::new(10.0, 0.0), Position::new(5.0, 0.2)];
         let places = ends.map(|centre| Disc { centre, extra: 0.0 });
-        let route = Route::of_team([&ends], &[1.5; 2], &places, &[])[0].remove(0);
+        let route = team(&ends, &[1.5; 2], &places, &[]).remove(0);
         let mut rests = [Rest::of(&route), Rest::of(&route)];
         let mut stands = RobotSet::default();
         let mut way = |stands, tight, price| route.path_round(Position::zeros(), stands, tight, price, &mut rests);
@@ -379,7 +385,7 @@ mod tests {
     fn robots_of_other_sizes_have_ways_of_their_own() {
         let discs = [Disc { centre: Position::new(5.0, 1.6), extra: 0.0 }];
         let goal = Position::new(10.0, 0.0);
-        let [routes] = Route::of_team([&[goal; 3]], &[1.5, 1.5, 2.0], &[place((10.0, 0.0)); 3], &discs);
+        let routes = team(&[goal; 3], &[1.5, 1.5, 2.0], &[place((10.0, 0.0)); 3], &discs);
         assert_eq!(routes[1].aim(Position::zeros()), goal);
         assert!(routes[2].aim(Position::zeros()).y < 0.0);
         assert!(Arc::ptr_eq(&routes[0].corners, &routes[1].corners));

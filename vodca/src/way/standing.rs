@@ -6,6 +6,7 @@
 use super::chains::Chains;
 use super::corners::{Closed, is_free};
 use super::robot_set::{MOST_STANDING, RobotSet};
+use super::route::Route;
 use crate::Position;
 use crate::controller::View;
 use crate::layout::Layout;
@@ -14,9 +15,8 @@ use crate::params::Params;
 /// What stands, seen by one robot in one tick.
 #[derive(Clone, Debug)]
 pub struct Standing {
-    /// What the centre of the robot must not enter: robots that stand, then obstacles.
+    /// What the centre of the robot must not enter while they stand: the robots that do.
     closed: Vec<Closed>,
-    robots: usize,
     /// The robots that stand, by number.
     pub who: RobotSet,
     /// Those of them who cannot make room.
@@ -25,14 +25,14 @@ pub struct Standing {
 }
 
 impl Standing {
-    /// Room for `discs`.
-    pub fn with_capacity(discs: usize) -> Self {
+    /// Room for all of `layout`.
+    pub fn of(layout: &Layout) -> Self {
+        let robots = layout.set_points.len();
         Self {
-            closed: Vec::with_capacity(discs),
-            robots: 0,
+            closed: Vec::with_capacity(robots),
             who: RobotSet::default(),
             tight: RobotSet::default(),
-            chains: Chains::with_capacity(discs),
+            chains: Chains::with_capacity(robots + layout.obstacles.solids()),
         }
     }
 
@@ -56,14 +56,11 @@ impl Standing {
                 self.tight.add(other);
             }
         }
-        self.robots = self.closed.len();
-        let obstacles = layout.obstacles.iter();
-        self.closed.extend(obstacles.map(|disc| Closed { centre: disc.centre, radius: owed(disc.extra) }));
     }
 
-    /// Whether those who stand, and the obstacles, close the way between two places.
-    pub fn shuts_in(&mut self, from: Position, to: Position) -> bool {
-        let Self { closed, robots, chains, .. } = self;
-        !is_free(&closed[..*robots], from, to) && chains.separate(closed, from, to)
+    /// Whether those who stand, and what never moves for the robot of `route`, close the way between two places.
+    pub fn shuts_in(&mut self, route: &Route, from: Position, to: Position) -> bool {
+        let Self { closed, chains, .. } = self;
+        !is_free(closed, from, to) && chains.separate(closed, route.ground(), from, to)
     }
 }

@@ -199,6 +199,17 @@ pub fn place(
     Ok(())
 }
 
+/// Checks the outlines of a region as far as cutting does not.
+pub(crate) fn region(rings: &[Vec<Position>]) -> Result<(), ShapeProblem> {
+    for ring in rings {
+        coordinates(ring)?;
+        if ring.len() < 3 {
+            return Err(ShapeProblem::OpenPolygon { found: ring.len() });
+        }
+    }
+    if rings.is_empty() { Err(ShapeProblem::OpenPolygon { found: 0 }) } else { Ok(()) }
+}
+
 fn coordinates(points: &[Position]) -> Result<(), ShapeProblem> {
     let fits = |point: &Position| point.iter().all(|x| x.abs() <= MAX_COORDINATE);
     match points.iter().position(|point| !fits(point)) {

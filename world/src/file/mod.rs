@@ -16,6 +16,9 @@
 //! wall = [[0, 0], [10, 0], [10, 4]]
 //! thickness = 0.2
 //! ```
+//!
+//! A fourth form, `region`, is what a map's obstacles become in a copy of a scenario: outlines, the rims of holes
+//! among them, each with the solid on its left.
 
 use crate::Position;
 use crate::check::ShapeProblem;
@@ -49,7 +52,7 @@ impl From<Point> for [f64; 2] {
     }
 }
 
-/// One `[[obstacle]]`: exactly one of `position`, `polygon` and `wall`.
+/// One `[[obstacle]]`: exactly one of `position`, `polygon`, `wall` and `region`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ObstacleEntry {
@@ -71,6 +74,9 @@ pub struct ObstacleEntry {
     /// Of a wall, m.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub thickness: Option<f64>,
+    /// Outlines of a part of a map, each with the solid on its left, m.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub region: Option<Vec<Vec<Point>>>,
 }
 
 /// The scenario's `map`: a path, or a table with `file`, `unknown` and `simplify`.
@@ -120,7 +126,7 @@ impl<'de> Deserialize<'de> for MapEntry {
 #[derive(Debug, thiserror::Error)]
 pub enum LayoutError {
     /// None of the keys that say what it is.
-    #[error("{0}: it has no shape; allowed: position (and radius), polygon, or wall and thickness")]
+    #[error("{0}: it has no shape; allowed: position (and radius), polygon, wall and thickness, or region")]
     NoShape(String),
     /// More than one of them.
     #[error("{obstacle}: it has both {first} and {second}; write two [[obstacle]] entries")]
@@ -160,6 +166,22 @@ pub enum LayoutError {
     Map(#[from] MapError),
 }
 
+impl From<&Obstacle> for ObstacleEntry {
+    /// The entry from which the same obstacle is read again, to the last bit.
+    fn from(obstacle: &Obstacle) -> Self {
+        let points = |places: &Vec<Position>| places.iter().copied().map(Point).collect();
+        let named = Self { name: Some(obstacle.name().into()), ..Self::default() };
+        match obstacle.shape() {
+            Shape::Disc { centre, radius } => Self { position: Some(Point(*centre)), radius: Some(*radius), ..named },
+            Shape::Polygon(corners) => Self { polygon: Some(points(corners)), ..named },
+            Shape::Wall { points: chain, thickness } => {
+                Self { wall: Some(points(chain)), thickness: Some(*thickness), ..named }
+            }
+            Shape::Region(rings) => Self { region: Some(rings.iter().map(points).collect()), ..named },
+        }
+    }
+}
+
 impl ObstacleEntry {
     /// The obstacle that is written here: the `number`-th of its file. `default_radius` (m) is that of a disc
     /// without one.
@@ -173,8 +195,12 @@ impl ObstacleEntry {
     }
 
     fn shape(&self, name: &str, default_radius: f64) -> Result<Shape, LayoutError> {
-        let keys =
-            [("position", self.position.is_some()), ("polygon", self.polygon.is_some()), ("wall", self.wall.is_some())];
+        let keys = [
+            ("position", self.position.is_some()),
+            ("polygon", self.polygon.is_some()),
+            ("wall", self.wall.is_some()),
+            ("region", self.region.is_some()),
+        ];
         let mut given = keys.into_iter().filter(|(_, given)| *given).map(|(key, _)| key);
         if let (Some(first), Some(second)) = (given.next(), given.next()) {
             return Err(LayoutError::TwoShapes { obstacle: name.into(), first, second });
@@ -183,6 +209,8 @@ impl ObstacleEntry {
             "disc"
         } else if self.wall.is_some() {
             "wall"
+        } else if self.region.is_some() {
+            "region"
         } else {
             "polygon"
         };
@@ -195,10 +223,11 @@ impl ObstacleEntry {
             }
         }
         let places = |points: &Vec<Point>| points.iter().map(|point| point.0).collect();
-        match (self.position, &self.polygon, &self.wall) {
+        match (self.position, &self.polygon, &self.wall, &self.region) {
             (Some(centre), ..) => Ok(Shape::Disc { centre: centre.0, radius: self.radius.unwrap_or(default_radius) }),
-            (_, Some(corners), _) => Ok(Shape::Polygon(places(corners))),
-            (.., Some(points)) => {
+            (_, Some(corners), ..) => Ok(Shape::Polygon(places(corners))),
+            (.., Some(rings)) => Ok(Shape::Region(rings.iter().map(places).collect())),
+            (_, _, Some(points), _) => {
                 let thickness = self.thickness.ok_or_else(|| LayoutError::NoThickness(name.into()))?;
                 Ok(Shape::Wall { points: places(points), thickness })
             }

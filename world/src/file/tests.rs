@@ -31,7 +31,7 @@ fn discs_polygons_and_walls_are_read() {
 #[test]
 fn mistakes_name_the_obstacle_and_what_is_allowed() {
     for (entry, parts) in [
-        ("name = \"a\"", ["a: it has no shape", "polygon, or wall and thickness"]),
+        ("name = \"a\"", ["a: it has no shape", "polygon, wall and thickness, or region"]),
         ("position = [0, 0]\nwall = [[0, 0], [1, 0]]", ["obstacle-0", "both position and wall"]),
         ("polygon = [[0, 0], [1, 0], [1, 1]]\nradius = 1", ["radius does not belong to a polygon", "position"]),
         ("position = [0, 0]\nthickness = 1", ["thickness does not belong to a disc", "with wall"]),

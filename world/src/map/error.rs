@@ -1,6 +1,6 @@
 //! Why a map cannot be used.
 
-use crate::shape::CutError;
+use crate::check::ShapeProblem;
 use std::path::PathBuf;
 
 /// Why a map cannot be used: the file, the key, the value and what is allowed.
@@ -60,6 +60,6 @@ pub enum MapError {
         /// The file.
         file: PathBuf,
         /// Why not.
-        source: CutError,
+        source: ShapeProblem,
     },
 }

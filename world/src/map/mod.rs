@@ -18,7 +18,8 @@ pub use image::Grey;
 pub use meta::{Meta, Mode};
 
 use crate::Position;
-use crate::shape::{Obstacle, into_convex};
+use crate::check::ShapeProblem;
+use crate::shape::{Obstacle, Shape};
 use std::path::Path;
 
 /// What a cell that is neither occupied nor free counts as.
@@ -103,25 +104,16 @@ pub fn load(file: &Path, settings: MapSettings) -> Result<Vec<Obstacle>, MapErro
 ///
 /// # Errors
 /// A region that cannot be cut into convex pieces.
-pub fn obstacles(
-    name: &str,
-    image: &Grey,
-    meta: &Meta,
-    settings: MapSettings,
-) -> Result<Vec<Obstacle>, crate::shape::CutError> {
+pub fn obstacles(name: &str, image: &Grey, meta: &Meta, settings: MapSettings) -> Result<Vec<Obstacle>, ShapeProblem> {
     let grid = Grid::new(image, meta, settings.unknown);
     let bound = settings.simplify.map_or(1.0, |bound| bound / meta.resolution);
     let rim = f64::from(u8::from(settings.unknown == Unknown::Occupied));
     let to_world = |cell: &Position| meta.to_world(cell.add_scalar(-rim));
     let mut found = Vec::new();
     for (number, rings) in outline::regions(&grid).into_iter().enumerate() {
-        let rings: Vec<Vec<Position>> = simplify::grown(&rings, bound)
-            .into_iter()
-            .map(|ring| ring.into_iter().map(|(x, y)| Position::new(x as f64, y as f64)).collect())
-            .collect();
-        let cores = into_convex(&rings)?.iter().map(|core| core.iter().map(to_world).collect()).collect();
-        let rings = rings.iter().map(|ring| ring.iter().map(to_world).collect()).collect();
-        found.push(Obstacle::region(format!("{name}-{}", number + 1), rings, cores));
+        let place = |(x, y)| to_world(&Position::new(x as f64, y as f64));
+        let rings = simplify::grown(&rings, bound).into_iter().map(|ring| ring.into_iter().map(place).collect());
+        found.push(Obstacle::new(format!("{name}-{}", number + 1), Shape::Region(rings.collect()))?);
     }
     Ok(found)
 }

@@ -96,6 +96,15 @@ pub(super) fn round_all(obstacles: &Obstacles, clearance: f64) -> Vec<Corner> {
     corners
 }
 
+/// The corners round discs of a centre and a radius (m), whether anything is in their way or not.
+pub(super) fn round_discs(discs: &[(Position, f64)]) -> impl Iterator<Item = Corner> {
+    discs.iter().flat_map(|(centre, radius)| {
+        let mut corners = Vec::new();
+        round_vertex(&mut corners, *centre, Position::new(1.0, 0.0), TAU, *radius);
+        corners
+    })
+}
+
 /// The corners round one vertex: between tangents to the circle of `radius` (m) whose normals turn, from
 /// `normal`, by `turn` (rad) in equal steps of at most [`ARC`].
 fn round_vertex(corners: &mut Vec<Corner>, pivot: Position, normal: Position, turn: f64, radius: f64) {

@@ -37,6 +37,8 @@ pub const ARC: f64 = PI / 8.0;
 pub const CUT: f64 = 1e-3;
 /// Rounding allowance on distances, m, for clearances next to nothing.
 const ROUNDING: f64 = 1e-9;
+/// Who is this share of its clearance too near is sliding along a shape, not lost in it.
+const SLIDING: f64 = 0.05;
 /// A place nearer to a corner than this has reached it, m.
 const REACHED: f64 = 1e-6;
 

@@ -1,6 +1,6 @@
 //! The corners that robots of one clearance can bend at, and who sees whom.
 
-use super::{Corner, corners, least_in_search, least_on_the_way};
+use super::{Corner, SLIDING, corners, least_in_search, least_on_the_way};
 use crate::Position;
 use crate::shape::{Obstacles, Piece};
 use std::sync::Arc;
@@ -14,6 +14,8 @@ pub struct Roadmap {
     obstacles: Arc<Obstacles>,
     clearance: f64,
     corners: Vec<Corner>,
+    /// How many of them, the first ones, are round what stands.
+    fixed: usize,
     /// By corner: where its own part of `seen` begins; one more at the end.
     first: Vec<u32>,
     /// The corners that a taut way may go on to.
@@ -24,13 +26,22 @@ impl Roadmap {
     /// Looks for all straight lines between the corners for robots whose centres keep `clearance` (m; at least
     /// a micrometre is taken) from everything that stands.
     pub fn new(obstacles: Arc<Obstacles>, clearance: f64) -> Self {
+        Self::with_places(obstacles, clearance, &[])
+    }
+
+    /// The same with corners round `places` as well: discs (centre and radius, m) that a robot's centre keeps out of
+    /// only now and then, so that they are in nobody's way here.
+    pub fn with_places(obstacles: Arc<Obstacles>, clearance: f64, places: &[(Position, f64)]) -> Self {
         let clearance = clearance.max(LEAST_CLEARANCE);
-        let mut map = Self { obstacles, clearance, corners: Vec::new(), first: vec![0], seen: Vec::new() };
+        let (corners, seen) = (Vec::new(), Vec::new());
+        let mut map = Self { obstacles, clearance, corners, fixed: 0, first: vec![0], seen };
         let least = least_in_search(clearance);
-        map.corners = corners::round_all(&map.obstacles, clearance);
-        map.corners.retain(|corner| {
-            map.obstacles.pieces_within(corner.at, clearance).all(|piece| piece.distance(corner.at) >= least)
-        });
+        let open = |corner: &Corner| map.is_open(corner.at, least);
+        let mut corners = corners::round_all(&map.obstacles, clearance);
+        corners.retain(open);
+        let fixed = corners.len();
+        corners.extend(corners::round_discs(places).filter(open));
+        (map.corners, map.fixed) = (corners, fixed);
         let mut pairs = map.tangents(least);
         pairs.sort_unstable();
         map.first.extend((0..map.corners.len()).map(|i| pairs.partition_point(|pair| pair.0 as usize <= i) as u32));
@@ -85,9 +96,31 @@ impl Roadmap {
         self.clearance
     }
 
-    /// Where ways may bend.
+    /// Where ways may bend: round what stands, then round places.
     pub fn corners(&self) -> &[Corner] {
         &self.corners
+    }
+
+    /// How many corners, the first ones, are round what stands.
+    pub fn fixed(&self) -> usize {
+        self.fixed
+    }
+
+    /// Whether every piece is at least `least` (m) from `place`.
+    pub fn is_open(&self, place: Position, least: f64) -> bool {
+        self.obstacles.pieces_within(place, least).all(|piece| piece.distance(place) >= least)
+    }
+
+    /// Whether `place` is where ways lead, or nearly so.
+    pub fn is_outside(&self, place: Position) -> bool {
+        self.is_open(place, self.clearance * (1.0 - SLIDING))
+    }
+
+    /// Whether a way straight from `place`, which [is outside](Self::is_outside), may bend at `corner`: else it runs
+    /// into what the corner is round.
+    pub fn may_bend(&self, place: Position, corner: usize) -> bool {
+        let corner = &self.corners[corner];
+        corner.is_tangent(corner.at - place, 2.0 * SLIDING * (corner.at - corner.pivot).norm())
     }
 
     /// The corners to which a taut way may go on from corner `from`.

@@ -1,6 +1,6 @@
 //! All ways to one set-point.
 
-use super::{CUT, Corner, REACHED, Roadmap, Unreachable, Walk, least_in_search};
+use super::{CUT, REACHED, Roadmap, Unreachable, Walk, least_in_search};
 use crate::Position;
 use crate::check;
 use std::cmp::Reverse;
@@ -9,8 +9,6 @@ use std::sync::Arc;
 
 /// No corner: the set-point is next.
 pub(super) const NONE: u32 = u32::MAX;
-/// Who is this share of its clearance too near is sliding along a shape, not lost in it.
-const SLIDING: f64 = 0.05;
 /// How often a place that is too near to several pieces is moved out of the deepest.
 const PUSHES: usize = 16;
 
@@ -110,7 +108,7 @@ impl Route {
             return Some(Aim { point: self.set_point, left: straight, corner: None });
         }
         // Corners that it could only reach through their own shapes need no closer look, unless it is in one.
-        let is_outside = self.is_outside(from);
+        let is_outside = self.map.is_outside(from);
         let mut best: Option<(f64, u32)> = None;
         let known = hint.filter(|corner| self.left.get(*corner as usize).is_some_and(|left| left.is_finite()));
         for &corner in known.iter().chain(&self.order) {
@@ -118,13 +116,10 @@ impl Route {
             if best.is_some_and(|(least, _)| left > least) {
                 break; // So it is for all that follow.
             }
-            let Corner { at, pivot, .. } = self.map.corners()[corner as usize];
+            let at = self.map.corners()[corner as usize].at;
             let near = (at - from).norm();
             let way = (near + left, corner);
-            let may_pass = || {
-                let tolerance = 2.0 * SLIDING * (at - pivot).norm();
-                !is_outside || self.map.corners()[corner as usize].is_tangent(at - from, tolerance)
-            };
+            let may_pass = || !is_outside || self.map.may_bend(from, corner as usize);
             if best.is_none_or(|least| way < least)
                 && (near <= REACHED || (may_pass() && self.is_taut(from, corner) && self.map.is_free(from, at)))
             {
@@ -140,12 +135,6 @@ impl Route {
         let next = self.after(corner);
         let point = next.map_or(self.set_point, |next| self.map.corners()[next as usize].at);
         Some(Aim { point, left, corner: next })
-    }
-
-    /// Whether `from` is where ways lead, or nearly so.
-    fn is_outside(&self, from: Position) -> bool {
-        let owed = self.map.clearance() * (1.0 - SLIDING);
-        self.map.obstacles().pieces_within(from, owed).all(|piece| piece.distance(from) >= owed)
     }
 
     /// Whether the way over `corner` bends there towards what it goes round: else there is a shorter one.
@@ -167,7 +156,7 @@ impl Route {
             let Some((_, nearest)) = self.map.obstacles().nearest(place, clearance) else { break };
             place += nearest.normal * (clearance - nearest.distance);
         }
-        (place != from && self.map.is_free(place, place)).then_some(place)
+        (place != from && self.map.is_open(place, least_in_search(clearance))).then_some(place)
     }
 
     /// The bends of the shortest way from `from` (m), the set-point last. Nothing is allocated.

@@ -83,7 +83,10 @@ impl Obstacle {
                 ring.extend(ring[1..ring.len() - 1].iter().rev().copied().collect::<Vec<_>>());
                 (vec![ring], thickness / 2.0)
             }
-            Shape::Region(rings) => (rings.clone(), 0.0),
+            Shape::Region(rings) => {
+                check::region(rings)?;
+                (rings.clone(), 0.0)
+            }
         };
         let cores = match &shape {
             Shape::Disc { .. } => rings.clone(),
@@ -94,11 +97,6 @@ impl Obstacle {
             Shape::Polygon(_) | Shape::Region(_) => into_convex(&rings)?,
         };
         Ok(Self { name: name.into(), shape, rings, radius, cores })
-    }
-
-    /// A region that has been cut already: a map's, which is cut in whole cells.
-    pub(crate) fn region(name: String, rings: Vec<Vec<Position>>, cores: Vec<Vec<Position>>) -> Self {
-        Self { name, shape: Shape::Region(rings.clone()), rings, radius: 0.0, cores }
     }
 
     /// What errors and pictures call it.
@@ -115,6 +113,11 @@ impl Obstacle {
     /// and back, a disc's is its centre.
     pub fn rings(&self) -> &[Vec<Position>] {
         &self.rings
+    }
+
+    /// The cores of its convex pieces: each is all that is within [`Obstacle::radius`] of one.
+    pub fn cores(&self) -> &[Vec<Position>] {
+        &self.cores
     }
 
     /// How far it reaches beyond its rings, m.

@@ -46,13 +46,13 @@ impl Obstacles {
 
     /// The pieces whose rectangles come within `reach` (m) of `place`: every piece that is as near, and perhaps
     /// a few more. Always in the same order; nothing is allocated.
-    pub fn pieces_within(&self, place: Position, reach: f64) -> impl Iterator<Item = &Piece> {
+    pub fn pieces_within(&self, place: Position, reach: f64) -> impl Iterator<Item = &Piece> + Clone {
         self.tree.find(&self.pieces, tree::near(place, reach))
     }
 
     /// The pieces whose rectangles come within `reach` (m) of the straight line: every piece that is as near,
     /// and perhaps a few more. Always in the same order; nothing is allocated.
-    pub fn pieces_along(&self, from: Position, to: Position, reach: f64) -> impl Iterator<Item = &Piece> {
+    pub fn pieces_along(&self, from: Position, to: Position, reach: f64) -> impl Iterator<Item = &Piece> + Clone {
         self.tree.find(&self.pieces, tree::along(from, to, reach))
     }
 

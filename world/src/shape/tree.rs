@@ -62,6 +62,7 @@ impl Tree {
 }
 
 /// The pieces that a search finds, one after the other; nothing is allocated.
+#[derive(Clone)]
 pub(super) struct Found<'a, F> {
     tree: &'a Tree,
     pieces: &'a [Piece],
@@ -99,11 +100,11 @@ impl<'a, F: Fn(&Bounds) -> bool> Iterator for Found<'a, F> {
 }
 
 /// The pieces whose rectangles come within `reach` (m) of `place`.
-pub(super) fn near(place: Position, reach: f64) -> impl Fn(&Bounds) -> bool {
+pub(super) fn near(place: Position, reach: f64) -> impl Fn(&Bounds) -> bool + Clone {
     move |bounds| bounds.distance(place) <= reach
 }
 
 /// The pieces whose rectangles come within `reach` (m) of the straight line.
-pub(super) fn along(from: Position, to: Position, reach: f64) -> impl Fn(&Bounds) -> bool {
+pub(super) fn along(from: Position, to: Position, reach: f64) -> impl Fn(&Bounds) -> bool + Clone {
     move |bounds| bounds.meets_line(from, to, reach)
 }

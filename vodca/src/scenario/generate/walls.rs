@@ -14,7 +14,7 @@ pub(super) const FOREST: &str = "forest:N:SEED";
 pub(super) const ROOMS: &str = "rooms:N:SEED";
 
 /// K of layouts in which robots queue.
-const MAX_TICKS: u64 = 1500;
+pub(super) const MAX_TICKS: u64 = 1500;
 /// Radius of a wall's discs, m: half of the usual min_separation, what a disc without a radius has.
 const RADIUS: f64 = 0.75;
 /// Width of the openings between rooms, m.
