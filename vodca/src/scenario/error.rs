@@ -50,7 +50,7 @@ pub enum ScenarioError {
         /// The file and the line.
         place: String,
         /// What is wrong with what.
-        source: LayoutError,
+        source: Box<LayoutError>,
     },
     /// No file, built-in or generator by that name.
     #[error(
@@ -171,7 +171,7 @@ pub enum Problem {
     },
     /// A start or a set-point inside a shape, or nearer to it than the robot is large.
     #[error(transparent)]
-    Place(PlaceProblem),
+    Place(Box<PlaceProblem>),
     /// A set-point to which no way leads.
     #[error("{robot} cannot reach its set-point: {reason}")]
     Unreachable {
@@ -243,7 +243,9 @@ impl Problem {
             Self::DuplicateName(name) => Some(name),
             Self::Coincident { a, .. } | Self::CloseStart { a, .. } | Self::CloseSetPoint { a, .. } => Some(a),
             Self::Unreachable { robot, .. } | Self::NoJitteredStart { robot, .. } => Some(robot),
-            Self::Place(PlaceProblem::Inside { robot, .. } | PlaceProblem::TooNear { robot, .. }) => Some(robot),
+            Self::Place(problem) => match &**problem {
+                PlaceProblem::Inside { robot, .. } | PlaceProblem::TooNear { robot, .. } => Some(robot),
+            },
             Self::NoRobots | Self::TooManyRobots(_) | Self::Integer { .. } => None,
         }
     }

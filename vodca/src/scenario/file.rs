@@ -64,7 +64,7 @@ impl File {
         let at = |span: std::ops::Range<usize>| format!("{file}, line {}", lines::line_at(text, span.start));
         let (mut discs, mut shapes) = (Vec::new(), Vec::new());
         for (number, entry) in self.obstacle.iter().enumerate() {
-            let unusable = |source| ScenarioError::Standing { place: at(entry.span()), source };
+            let unusable = |error| ScenarioError::Standing { place: at(entry.span()), source: Box::new(error) };
             // A disc without a radius has half of the separation, which is a parameter: any radius will do for a check.
             let checked = entry.get_ref().obstacle(number, 1.0).map_err(unusable)?;
             match entry.get_ref() {
@@ -78,7 +78,8 @@ impl File {
             let MapEntry { file: path, unknown, simplify } = map.get_ref();
             let path = Path::new(file).parent().unwrap_or(Path::new("")).join(path);
             let regions = map::load(&path, MapSettings { unknown: *unknown, simplify: *simplify });
-            let unusable = |source| ScenarioError::Standing { place: at(map.span()), source: LayoutError::Map(source) };
+            let unusable =
+                |source| ScenarioError::Standing { place: at(map.span()), source: Box::new(LayoutError::Map(source)) };
             shapes.extend(regions.map_err(unusable)?);
         }
         Ok((discs, shapes))

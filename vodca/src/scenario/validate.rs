@@ -95,9 +95,9 @@ impl Scenario {
             match place("start", a.start) {
                 // Nearer than owed, but outside: out of there the way is known.
                 Err(PlaceProblem::TooNear { .. }) if self.allow_close_start => {}
-                other => other.map_err(Problem::Place)?,
+                other => other.map_err(Box::new).map_err(Problem::Place)?,
             }
-            place("set-point", a.set_point).map_err(Problem::Place)?;
+            place("set-point", a.set_point).map_err(Box::new).map_err(Problem::Place)?;
         }
         Ok(())
     }
