@@ -2,7 +2,7 @@
 
 use crate::Position;
 use crate::geometry::Disc;
-use crate::scenario::Scenario;
+use crate::scenario::{Obstacle, Scenario};
 use crate::way::Filling;
 use crate::way::Route;
 
@@ -47,6 +47,18 @@ impl Layout {
         let filling = Filling::new(&places, &obstacles, min_separation);
         let [routes, outside] = Route::of_team([&set_points, &filling.outside], &owed, &places, &obstacles);
         Self { set_points, robot_extra, obstacles, routes, outside, filling, room }
+    }
+
+    /// The layout of a scenario in which lost robots stand: `lost` says where (m), by robot number. Their bodies are
+    /// obstacles after the scenario's own.
+    pub fn with_lost(scenario: &Scenario, min_separation: f64, lost: &[Option<Position>]) -> Self {
+        let mut scenario = scenario.clone();
+        for (robot, at) in scenario.robots.iter().zip(lost) {
+            if let Some(position) = *at {
+                scenario.obstacles.push(Obstacle { name: robot.name.clone(), position, radius: robot.radius });
+            }
+        }
+        Self::of(&scenario, min_separation)
     }
 
     /// Whether `robot` cannot make room at its set-point: two that stand side by side, each with a third of a
