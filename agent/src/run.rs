@@ -72,7 +72,9 @@ pub enum RunError {
         run: PathBuf,
     },
     /// Somebody else drives this robot.
-    #[error("robot {robot} was not admitted to the run within {seconds:.0} s: another process drives it; start it again when that one has ended")]
+    #[error(
+        "robot {robot} was not admitted to the run within {seconds:.0} s: another process drives it; start it again when that one has ended"
+    )]
     NotAdmitted {
         /// Which robot.
         robot: usize,

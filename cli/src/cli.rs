@@ -1,8 +1,8 @@
 //! The command line: one subcommand per file of `commands/`.
 
 use crate::commands::{
-    agent, bench, compare, evaluate, faults, figures, former, golden, params, replay, report, results, rollout, run, scenario, search,
-    verify,
+    agent, bench, compare, evaluate, faults, figures, former, golden, params, replay, report, results, rollout, run,
+    scenario, search, verify,
 };
 use crate::exit::{Ending, Failure, Outcome};
 use crate::needs::needs;

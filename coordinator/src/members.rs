@@ -40,6 +40,8 @@ pub struct Members {
     membership: Membership,
     bodies: Vec<Position>,
     changes: Vec<Change>,
+    /// How many of them are in their final order.
+    ordered: usize,
     /// Since when a robot has answered nothing.
     silent_since: Vec<Option<Instant>>,
     /// When a robot that was stopped on purpose goes on; it is heard in that tick.
@@ -56,6 +58,7 @@ impl Members {
             membership: Membership::new(robots),
             bodies: scenario.robots.iter().map(|robot| robot.start).collect(),
             changes: Vec::new(),
+            ordered: 0,
             silent_since: vec![None; robots],
             paused_until: vec![None; robots],
             returns: vec![None; robots],
@@ -116,6 +119,10 @@ impl Members {
 
     /// `robot` says something in a tick: what it did (`step` is its tick), or that it is there. `true`: it counts.
     pub(crate) fn hear(&mut self, robot: usize, life: u32, step: Option<u64>) -> bool {
+        // Something said long ago must not end a fault on purpose before its time.
+        if self.paused_until[robot].is_some_and(|until| self.membership.tick() < until) {
+            return false;
+        }
         match self.membership.hear(robot, life, step) {
             Verdict::Counts => true,
             Verdict::SignOfLife => {
@@ -154,8 +161,11 @@ impl Members {
         self.paused_until[robot] = None;
         self.returns[robot] = None;
         // It was heard, but did not live to begin again.
-        if self.changes.last().is_some_and(|last| last.robot == robot && last.state == State::Back && last.tick > tick) {
-            self.changes.pop();
+        if let Some(last) = self.changes.iter().rposition(|change| change.robot == robot)
+            && self.changes[last].state == State::Back
+            && self.changes[last].tick > tick
+        {
+            self.changes.remove(last);
         }
         if self.membership.lose(robot, tick) {
             self.push(robot, State::Lost, why);
@@ -240,6 +250,9 @@ impl Members {
     /// The tick is over.
     pub(crate) fn end(&mut self) {
         self.membership.end();
+        // In which order things happened within a tick depends on time.
+        self.changes[self.ordered..].sort_by_key(|change| change.robot);
+        self.ordered = self.changes.len();
     }
 
     fn push(&mut self, robot: usize, state: State, why: String) {

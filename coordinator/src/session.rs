@@ -1,8 +1,8 @@
 //! Everything that watches a run: record and timings.
 
 use crate::horizons::RunHorizons;
-use crate::policy::PolicySummary;
 use crate::members::Change;
+use crate::policy::PolicySummary;
 use crate::record::latency::{self, LatencyWriter};
 use crate::record::membership::{self, MembershipWriter};
 use crate::record::{About, RecordError, Recorder, RunFolder};

@@ -10,8 +10,8 @@ use shared::os;
 use shared::runtime_dir::RuntimeDir;
 use shared::stop::StopFlag;
 use std::path::Path;
-use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::thread;
 use std::time::Duration;
 use vodca::horizon_source::HorizonSpec;
@@ -180,8 +180,21 @@ fn left(place: &RuntimeDir) -> usize {
 /// All kills as a table, a row each.
 pub fn table(kills: &[Kill]) -> TextTable {
     let mut table = TextTable::new(&[
-        "run", "scenario", "robot", "tick", "delay_us", "respawn", "settled", "other_deaths", "pairs_below",
-        "min_separation", "arrived", "shut_off", "missing", "rejoin_ms", "left",
+        "run",
+        "scenario",
+        "robot",
+        "tick",
+        "delay_us",
+        "respawn",
+        "settled",
+        "other_deaths",
+        "pairs_below",
+        "min_separation",
+        "arrived",
+        "shut_off",
+        "missing",
+        "rejoin_ms",
+        "left",
     ]);
     for kill in kills {
         let number = |value: Option<f64>| value.map_or(String::new(), |value| format!("{value:.3}"));
@@ -209,8 +222,18 @@ pub fn table(kills: &[Kill]) -> TextTable {
 /// The sums over `kills`: without and with a restart.
 pub fn sums(kills: &[Kill]) -> TextTable {
     let mut table = TextTable::new(&[
-        "respawn", "runs", "good", "other deaths", "pairs below", "least m", "missing", "shut off", "left", "rejoin p50 ms",
-        "p99", "max",
+        "respawn",
+        "runs",
+        "good",
+        "other deaths",
+        "pairs below",
+        "least m",
+        "missing",
+        "shut off",
+        "left",
+        "rejoin p50 ms",
+        "p99",
+        "max",
     ]);
     for respawn in [false, true] {
         let chosen: Vec<&Kill> = kills.iter().filter(|kill| kill.respawn == respawn).collect();

@@ -434,7 +434,12 @@ mod tests {
     #[test]
     fn who_is_absent_is_told_and_numbers_that_mean_nothing_are_not() {
         let mut announcement = Announcement { absent: 2, ..Announcement::default() };
-        announcement.states[..4].copy_from_slice(&[State::Driving.number(), State::Lost.number(), 77, State::Back.number()]);
+        announcement.states[..4].copy_from_slice(&[
+            State::Driving.number(),
+            State::Lost.number(),
+            77,
+            State::Back.number(),
+        ]);
         announcement.bodies[1] = [1.0, -2.0];
         let told: Vec<_> = announcement.absent().collect();
         assert_eq!(told, [(1, State::Lost, Position::new(1.0, -2.0)), (3, State::Back, Position::zeros())]);

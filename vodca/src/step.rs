@@ -78,15 +78,8 @@ impl Level {
 
 impl Status {
     /// All of them, by number.
-    pub const ALL: [Status; 7] = [
-        Status::Solved,
-        Status::Relaxed,
-        Status::Held,
-        Status::Shifted,
-        Status::Stopped,
-        Status::Late,
-        Status::Lost,
-    ];
+    pub const ALL: [Status; 7] =
+        [Status::Solved, Status::Relaxed, Status::Held, Status::Shifted, Status::Stopped, Status::Late, Status::Lost];
 
     /// Its word in every file; serde writes the same.
     pub const fn word(self) -> &'static str {
@@ -159,7 +152,13 @@ pub struct Step {
 impl Step {
     /// What is recorded of a robot that did not take part in a tick: it stands at `at` (m), measured there at its
     /// start and end.
-    pub fn absent(at: Position, measured: [Position; 2], horizon: Horizon, set_point: Position, status: Status) -> Self {
+    pub fn absent(
+        at: Position,
+        measured: [Position; 2],
+        horizon: Horizon,
+        set_point: Position,
+        status: Status,
+    ) -> Self {
         Self {
             position: at,
             measured: measured[0],

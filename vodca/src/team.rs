@@ -108,7 +108,9 @@ impl Team {
             let missing = roll.get(robot).and_then(|attendance| attendance.missing);
             self.steps.push(match missing {
                 None => self.robots[robot].step(self.tick, horizon, &self.hearing[robot]),
-                Some(status) => self.robots[robot].stand(self.tick, horizon, self.scenario.robots[robot].set_point, status),
+                Some(status) => {
+                    self.robots[robot].stand(self.tick, horizon, self.scenario.robots[robot].set_point, status)
+                }
             });
         }
         for (robot, step) in self.steps.iter().enumerate() {

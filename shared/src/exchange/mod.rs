@@ -128,7 +128,8 @@ pub fn open(
 ) -> Result<Box<dyn Exchange>, ServiceError> {
     let services = Services::open(place, robots, kind == Kind::Peer)?;
     let life = services.next_life(robot);
-    let clock = Clock { announcements: services.announcements()?, robot, epoch, life, next_tick: 0, absent: Vec::new() };
+    let clock =
+        Clock { announcements: services.announcements()?, robot, epoch, life, next_tick: 0, absent: Vec::new() };
     let reporter = services.reporter()?;
     Ok(match services.plans()? {
         Some((sender, receiver)) => Box::new(peer::Peer::new(clock, reporter, sender, receiver, robots)),

@@ -3,7 +3,8 @@
 use tests::{ENDLESS, Robots, Run};
 
 fn lost(fault: &'static str, exchange: &str) -> String {
-    let finished = Run::start(Robots::Faulty(fault), &format!("14 {ENDLESS} --on-loss stop --exchange {exchange}")).finish();
+    let finished =
+        Run::start(Robots::Faulty(fault), &format!("14 {ENDLESS} --on-loss stop --exchange {exchange}")).finish();
     assert_eq!(finished.status.code(), Some(3), "{finished:?}");
     finished.stderr
 }
