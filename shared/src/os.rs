@@ -115,6 +115,16 @@ mod tests {
     }
 
     #[test]
+    fn the_end_of_a_process_is_waited_for() {
+        let mut child = std::process::Command::new("sleep").arg("60").spawn().unwrap();
+        let handle = ProcessHandle::open(child.id()).unwrap();
+        kill(child.id());
+        handle.wait();
+        child.wait().unwrap();
+        assert!(ProcessHandle::open(u32::MAX / 2).is_none());
+    }
+
+    #[test]
     fn a_process_is_known_by_its_start_time() {
         let own = std::process::id();
         assert!(start_time(own).is_some_and(|time| time > 0));

@@ -177,6 +177,22 @@ mod tests {
     }
 
     #[test]
+    fn the_last_one_that_leaves_a_run_without_an_owner_tidies_up() {
+        let mut owner = std::process::Command::new("sleep").arg("60").spawn().unwrap();
+        let id = format!("{:x}-{:x}-0", owner.id(), os::start_time(owner.id()).unwrap());
+        let root = base().join(&id);
+        fs::create_dir_all(&root).unwrap();
+        let place = RuntimeDir { prefix: format!("{PREFIX}{id}_"), root: root.to_string_lossy().into_owned() };
+        let mut all: Vec<Attendee> = (0..3).map(|_| place.attend().unwrap()).collect();
+        all.pop();
+        assert!(root.exists(), "its owner lives and tidies up itself");
+        owner.kill().unwrap();
+        owner.wait().unwrap();
+        drop(all); // a run that starts just now may have swept it already
+        assert!(!root.exists());
+    }
+
+    #[test]
     fn leftovers_of_the_dead_are_swept_and_nothing_else() {
         // Process 1 lives, but did not start at clock tick 1: its number was used again.
         let id = format!("1-1-{:x}", std::process::id());

@@ -74,7 +74,8 @@ fn change(line: &str) -> Option<Change> {
     let state = fields.next()?;
     let state = State::ALL.into_iter().find(|known| word(*known) == state)?;
     let life = fields.next()?.parse().ok()?;
-    Some(Change { tick, robot, state, life, why: fields.next()?.trim_matches('"').replace("\"\"", "\"") })
+    let why = fields.next()?.strip_prefix('"')?.strip_suffix('"')?.replace("\"\"", "\"");
+    Some(Change { tick, robot, state, life, why })
 }
 
 #[cfg(test)]

@@ -3,7 +3,8 @@
 //! *Invariant*: what is found out during a tick is announced with the next one, never earlier. So the announcement of a
 //! tick does not depend on when within the tick before a process ended, and a run with faults can be repeated.
 
-use super::{Interrupt, LOOK_AROUND, ProcessTeam, Wanted};
+use super::collect::Wanted;
+use super::{Interrupt, LOOK_AROUND, ProcessTeam};
 use crate::launch::{self, Agents};
 use crate::run::OnLoss;
 use shared::chaos::ProcessFault;
@@ -114,7 +115,7 @@ impl ProcessTeam {
     }
 
     /// The process of `robot` has ended: the run does as well, or goes on without it, and perhaps another one is started.
-    fn lose(&mut self, robot: usize, tick: Option<u64>, how: String) -> Result<(), Interrupt> {
+    pub(super) fn lose(&mut self, robot: usize, tick: Option<u64>, how: String) -> Result<(), Interrupt> {
         let lost = self.roster.lost(robot, tick, how);
         let Some(tick) = tick.filter(|_| self.options.on_loss != OnLoss::Stop) else {
             return Err(Interrupt::Lost(lost));
