@@ -3,4 +3,6 @@
 //! [`run::run`] is the whole of it. The program `agent` runs it with simulated bodies; a robot of your own runs it
 //! with its own [`vodca::body::Body`] (see `examples/own_body.rs`).
 
+mod error;
+mod part;
 pub mod run;

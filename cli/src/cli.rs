@@ -1,8 +1,8 @@
 //! The command line: one subcommand per file of `commands/`.
 
 use crate::commands::{
-    bench, compare, evaluate, figures, former, golden, params, replay, report, results, rollout, run, scenario, search,
-    verify,
+    agent, bench, compare, evaluate, faults, figures, former, golden, params, replay, report, results, rollout, run,
+    scenario, search, verify,
 };
 use crate::exit::{Ending, Failure, Outcome};
 use crate::needs::needs;
@@ -33,6 +33,8 @@ Exit codes: 0 arrived, or asked to stop; 1 failed; 2 wrong usage; 3 a robot's pr
 pub(crate) enum Command {
     /// Run a team: one process per robot, recorded in a folder of its own (`./run.sh N` is short for it)
     Run(run::Args),
+    /// Drive one robot of a run that is under way: one that was lost, or in a run `--by-hand`
+    Agent(agent::Args),
     /// What became `compare`
     #[command(hide = true)]
     Sweep(former::Sweep),
@@ -52,6 +54,8 @@ pub(crate) enum Command {
     Rollout(rollout::Args),
     /// Write recorded runs as one page for a browser: replay, charts, figures
     Report(report::Args),
+    /// Kill robots' processes at random moments and count what that costs the others
+    Faults(faults::Args),
     /// Run the paper's tasks anew and draw its figures as SVG
     Figures(figures::Args),
     /// List, check and generate scenarios
@@ -79,6 +83,7 @@ impl Cli {
     pub fn run(self) -> Ending {
         match self.command {
             Command::Run(args) => run::run(args),
+            Command::Agent(args) => agent::run(&args),
             Command::Sweep(args) => former::sweep(args),
             Command::Compare(args) => compare::run(args),
             Command::Evaluate(args) => evaluate::run(args),
@@ -88,6 +93,7 @@ impl Cli {
             Command::Verify(args) => verify::run(args),
             Command::Rollout(args) => rollout::run(args),
             Command::Report(args) => report::run(args),
+            Command::Faults(args) => faults::run(&args),
             Command::Figures(args) => figures::run(args),
             Command::Scenario(args) => scenario::run(args),
             Command::Params(args) => params::run(args),

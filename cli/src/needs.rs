@@ -45,6 +45,7 @@ fn of(command: &Command) -> Vec<Need> {
         Command::Rollout(args) => {
             std::iter::once(Need::Agent).chain(asked(args.policy.is_some(), Need::PolicyServer)).collect()
         }
+        Command::Agent(_) | Command::Faults(_) => vec![Need::Agent],
         Command::Bench(args) => {
             let server = matches!(args.part, Part::Policy | Part::All);
             std::iter::once(Need::Agent).chain(asked(server, Need::PolicyServer)).collect()

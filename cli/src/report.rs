@@ -2,11 +2,12 @@
 
 use coordinator::latency::Percentiles;
 use coordinator::policy::{PolicySummary, VersionSummary};
-use coordinator::summary::{End, Summary};
+use coordinator::summary::{Absence, End, Summary};
 use coordinator::tick_parts::PARTS;
 use evaluation::text_table::TextTable;
 use std::fmt::Write as _;
 use std::path::Path;
+use vodca::membership::State;
 use vodca::way::LowerBound;
 
 /// The table and the summary of a run recorded in `folder`.
@@ -48,8 +49,13 @@ fn figures(summary: &Summary, folder: &Path) -> String {
     let ended = match summary.end {
         _ if summary.guarantee_broken => "no: the guaranteed separation was broken".into(),
         End::Arrived if run.success => "yes".into(),
-        End::Arrived => "no: everybody arrived, but not without collision".into(),
-        End::OutOfTicks => format!("no: {} of {} arrived in time", arrived(summary), run.robots.len()),
+        End::Arrived if lost(summary).next().is_none() && arrived(summary) == run.robots.len() => {
+            "no: everybody arrived, but not without collision".into()
+        }
+        End::Arrived => format!("no: {} of {} arrived{}", arrived(summary), run.robots.len(), who_was_lost(summary)),
+        End::OutOfTicks => {
+            format!("no: {} of {} arrived in time{}", arrived(summary), run.robots.len(), who_was_lost(summary))
+        }
         End::Interrupted => format!("no: asked to stop when {} of {} had arrived", arrived(summary), run.robots.len()),
         End::PeerLost => "no: a robot's process was lost".into(),
     };
@@ -79,7 +85,7 @@ fn figures(summary: &Summary, folder: &Path) -> String {
     ];
     let policy = summary.policy.as_ref().map(policy_lines).unwrap_or_default();
     let last = [("folder", folder.display().to_string())];
-    lines.iter().chain(&time_lines(summary)).chain(&policy).chain(&last).fold(
+    lines.iter().chain(&absence_lines(summary)).chain(&time_lines(summary)).chain(&policy).chain(&last).fold(
         String::new(),
         |mut text, (name, value)| {
             let _ = writeln!(text, "{name:<16}{value}"); // writing to a String cannot fail
@@ -130,6 +136,26 @@ fn policy_lines(policy: &PolicySummary) -> Vec<(&'static str, String)> {
             shadow.compared, shadow.mean_distance, shadow.max_distance
         );
         lines.push(("shadow", value));
+    }
+    lines
+}
+
+/// Robots that were lost and did not come back.
+fn lost(summary: &Summary) -> impl Iterator<Item = &Absence> {
+    summary.absences.iter().filter(|absence| absence.state == State::Lost && absence.until.is_none())
+}
+
+fn who_was_lost(summary: &Summary) -> String {
+    lost(summary).map(|absence| format!(", {} lost at tick {}", absence.name, absence.tick)).collect()
+}
+
+/// A line per absence; of many only the first.
+fn absence_lines(summary: &Summary) -> Vec<(&'static str, String)> {
+    const SHOWN: usize = 10;
+    let line = |absence: &Absence| ("absent", absence.to_string());
+    let mut lines: Vec<_> = summary.absences.iter().take(SHOWN).map(line).collect();
+    if let Some(more) = summary.absences.len().checked_sub(SHOWN + 1) {
+        lines.push(("absent", format!("{} more, see membership.csv", more + 1)));
     }
     lines
 }

@@ -74,7 +74,7 @@ pub fn log_file(run: &Path, robot: usize) -> PathBuf {
     run.join("logs").join(format!("robot-{robot:03}.log"))
 }
 
-/// Starts robot `robot`. It ends with this process at the latest (the kernel sees to it), is no
+/// Starts robot `robot`. It ends when this process has ended (it watches it), is no
 /// member of the terminal's foreground group (Ctrl-C reaches the coordinator only, which then ends
 /// the team in order), and writes its log into the folder of the run.
 pub fn start(program: &Program, run: &Path, robot: usize) -> Result<Child, LaunchError> {
@@ -86,7 +86,8 @@ pub fn start(program: &Program, run: &Path, robot: usize) -> Result<Child, Launc
     if let Some(folder) = log.parent() {
         fs::create_dir_all(folder).map_err(refused(&log))?;
     }
-    let stderr = File::create(&log).map_err(refused(&log))?;
+    // What an earlier process of this robot said stays.
+    let stderr = File::options().create(true).append(true).open(&log).map_err(refused(&log))?;
     let stdout = stderr.try_clone().map_err(refused(&log))?;
     Command::new(&program.path)
         .args(&program.arguments)

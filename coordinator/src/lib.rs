@@ -5,6 +5,7 @@ pub mod guarantee;
 pub mod horizons;
 pub mod latency;
 pub mod launch;
+pub mod members;
 mod own_runtime_dir;
 pub mod page;
 pub mod policy;

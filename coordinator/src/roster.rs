@@ -1,4 +1,4 @@
-//! Who is in the team: which robots are there, which have answered, and whose process has ended.
+//! The processes of a team: who has started, who has ended, and how.
 
 use crate::launch;
 use shared::os;
@@ -43,22 +43,19 @@ enum Process {
     Ended,
 }
 
-/// The team.
+/// The processes of a team.
 #[derive(Debug)]
 pub struct Roster {
     run: PathBuf,
     names: Vec<String>,
     processes: Vec<Process>,
-    answered: Vec<bool>,
-    missing: usize,
 }
 
 impl Roster {
-    /// A team of which no robot is there yet; `names` by robot number.
+    /// A team of which no process is there yet; `names` by robot number.
     pub fn new(run: PathBuf, names: Vec<String>) -> Self {
-        let robots = names.len();
-        let processes = (0..robots).map(|_| Process::Unknown).collect();
-        Self { run, names, processes, answered: vec![false; robots], missing: robots }
+        let processes = names.iter().map(|_| Process::Unknown).collect();
+        Self { run, names, processes }
     }
 
     /// Takes the process that was started for `robot`.
@@ -68,33 +65,9 @@ impl Roster {
 
     /// Takes note that `robot`, process `pid`, is there.
     pub fn seen(&mut self, robot: usize, pid: u32) {
-        if matches!(self.processes[robot], Process::Unknown) {
+        if matches!(self.processes[robot], Process::Unknown | Process::Ended) {
             self.processes[robot] = Process::ByHand(pid, os::start_time(pid));
         }
-    }
-
-    /// From now on everybody has to answer once more.
-    pub fn expect_all(&mut self) {
-        self.answered.fill(false);
-        self.missing = self.answered.len();
-    }
-
-    /// Takes note of an answer; `false`: it was the second one.
-    pub fn answer(&mut self, robot: usize) -> bool {
-        let first = !std::mem::replace(&mut self.answered[robot], true);
-        self.missing -= usize::from(first);
-        first
-    }
-
-    /// How many answers are missing.
-    pub fn missing(&self) -> usize {
-        self.missing
-    }
-
-    /// The first robot that has not answered, as lost because it `how`.
-    pub fn first_missing(&self, tick: Option<u64>, how: String) -> Option<PeerLost> {
-        let robot = self.answered.iter().position(|answered| !answered)?;
-        Some(self.lost(robot, tick, how))
     }
 
     /// `robot`, lost because it `how`.
@@ -109,28 +82,40 @@ impl Roster {
         }
     }
 
-    /// A robot whose process has ended, if there is one.
-    pub fn find_ended(&mut self, tick: Option<u64>) -> Option<PeerLost> {
-        for robot in 0..self.processes.len() {
-            let how = match &mut self.processes[robot] {
-                Process::Child(child) => match child.try_wait() {
-                    Ok(None) => continue,
-                    Ok(Some(status)) => launch::ending(status),
-                    Err(error) => format!("cannot be watched ({error})"),
-                },
-                Process::ByHand(pid, start) if os::start_time(*pid) != *start => "ended".to_string(),
-                _ => continue,
-            };
-            self.processes[robot] = Process::Ended;
-            return Some(self.lost(robot, tick, how));
-        }
-        None
+    /// How the process of `robot` has ended; told once. `None`: it has not, or there was none.
+    pub fn ended(&mut self, robot: usize) -> Option<String> {
+        let process = &mut self.processes[robot];
+        let how = match process {
+            Process::Child(child) => match child.try_wait() {
+                Ok(None) => return None,
+                Ok(Some(status)) => launch::ending(status),
+                Err(error) => format!("cannot be watched ({error})"),
+            },
+            Process::ByHand(pid, start) if os::start_time(*pid) != *start => "ended".to_string(),
+            _ => return None,
+        };
+        *process = Process::Ended;
+        Some(how)
     }
 
-    /// Kills `robot`.
+    /// The process that drives `robot`.
+    pub fn pid(&self, robot: usize) -> Option<u32> {
+        match &self.processes[robot] {
+            Process::Child(child) => Some(child.id()),
+            Process::ByHand(pid, start) if os::start_time(*pid) == *start => Some(*pid),
+            _ => None,
+        }
+    }
+
+    /// Kills `robot` for good: it has ended when this returns.
     pub fn kill(&mut self, robot: usize) {
-        if let Process::Child(child) = &mut self.processes[robot] {
-            let _ = child.kill(); // ended already is fine
+        match &mut self.processes[robot] {
+            Process::Child(child) => {
+                let _ = child.kill(); // ended already is fine
+                let _ = child.wait(); // its status is kept for whoever asks next
+            }
+            Process::ByHand(pid, start) if os::start_time(*pid) == *start => os::kill(*pid),
+            _ => {}
         }
     }
 

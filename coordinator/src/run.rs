@@ -5,10 +5,12 @@
 use crate::clock::Overruns;
 use crate::horizons::RunHorizons;
 use crate::launch::{self, Agents, LaunchError};
+use crate::members::Change;
 use crate::policy::{PolicyError, PolicyOptions, PolicySummary};
 use crate::record::RecordError;
 use crate::roster::PeerLost;
 use crate::team::{Interrupt, ProcessTeam};
+use shared::chaos::Chaos;
 use shared::exchange::Kind;
 use shared::messages::MAX_ROBOTS;
 use shared::runtime_dir::{RuntimeDir, RuntimeDirError};
@@ -24,10 +26,25 @@ use vodca::params::Params;
 use vodca::play::{Ending, Halt, Limits, Observer, Playable, Tick, Verdict, play};
 use vodca::scenario::{Scenario, ScenarioError};
 
-/// The usual [`Options::tick_deadline`]: a robot that hangs ends the run within 2 s, ending included.
+/// The usual [`Options::tick_deadline`]: a robot that hangs holds the others up no longer, or ends the run within 2 s.
 pub const TICK_DEADLINE: Duration = Duration::from_millis(1200);
 /// How long no further robot may come during the start.
 pub const STALL: Duration = Duration::from_secs(3);
+
+/// How long a robot may be silent before it is taken for dead and ended.
+pub const LOST_AFTER: Duration = Duration::from_secs(5);
+
+/// What a run does when a robot's process ends or falls silent.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum OnLoss {
+    /// It ends.
+    Stop,
+    /// The others drive on; the body that is left stands in their way.
+    Continue {
+        /// How often the process of a robot is started anew.
+        respawn: u32,
+    },
+}
 
 /// What one run is told beyond its scenario and parameters.
 #[derive(Clone, Debug)]
@@ -50,8 +67,14 @@ pub struct Options {
     pub real_time: bool,
     /// K, the most ticks.
     pub max_ticks: u64,
-    /// How long a tick may take before a robot that has not answered is lost.
+    /// How long a tick may take before a robot that has not answered is late (lost, where a loss ends the run).
     pub tick_deadline: Duration,
+    /// What happens when a robot is lost after the first tick has begun.
+    pub on_loss: OnLoss,
+    /// How long a late robot may be silent before it is taken for dead and ended.
+    pub lost_after: Duration,
+    /// Faults on purpose.
+    pub chaos: Chaos,
     /// How long robots may have to wait between two episodes.
     pub idle: Duration,
     /// How long the start may take. Of robots that are started here one is lost when, after the first
@@ -73,6 +96,9 @@ impl Options {
             real_time: false,
             max_ticks: scenario.max_ticks,
             tick_deadline: TICK_DEADLINE,
+            on_loss: OnLoss::Stop,
+            lost_after: LOST_AFTER,
+            chaos: Chaos::default(),
             idle: Duration::ZERO,
             start_patience: Duration::from_secs(30),
         })
@@ -133,7 +159,7 @@ pub enum Outcome {
     TimedOut,
     /// Somebody asked for it.
     Stopped,
-    /// A robot ended or fell silent.
+    /// A robot ended or fell silent, and that ends the run ([`OnLoss::Stop`], or before the first tick).
     PeerLost(PeerLost),
 }
 
@@ -144,6 +170,8 @@ pub struct Ended {
     pub outcome: Outcome,
     /// Ticks that began late (real time only).
     pub overruns: Overruns,
+    /// What became of robots that did not take part all the time.
+    pub changes: Vec<Change>,
     /// What the policy did.
     pub policy: Option<PolicySummary>,
 }
@@ -284,7 +312,8 @@ impl Run {
         let told = self.team.end(outcome.as_ref().ok());
         let outcome = outcome?; // what went wrong first is what counts
         told?;
-        Ok(Ended { outcome, overruns: self.team.overruns(), policy: policy? })
+        let changes = self.team.members().changes().to_vec();
+        Ok(Ended { outcome, overruns: self.team.overruns(), changes, policy: policy? })
     }
 
     /// Where the run's shared files are.

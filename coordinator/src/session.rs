@@ -1,11 +1,13 @@
 //! Everything that watches a run: record and timings.
 
 use crate::horizons::RunHorizons;
+use crate::members::Change;
 use crate::policy::PolicySummary;
 use crate::record::latency::{self, LatencyWriter};
+use crate::record::membership::{self, MembershipWriter};
 use crate::record::{About, RecordError, Recorder, RunFolder};
 use crate::run::RunTick;
-use crate::summary::{End, Summary, Timings};
+use crate::summary::{Absence, End, Summary, Timings};
 use crate::team::ProcessTeam;
 use crate::tick_parts::TickTimes;
 use std::path::{Path, PathBuf};
@@ -23,16 +25,20 @@ pub struct Session {
     recorder: Recorder,
     latency: LatencyWriter,
     timings: Timings,
+    membership: MembershipWriter,
+    changes: Vec<Change>,
 }
 
 impl Session {
     /// Writes what is known before the first tick into `folder`.
     pub fn start(folder: RunFolder, scenario: &Scenario, params: &Params, about: About) -> Result<Self, RecordError> {
-        let latency = folder.file(latency::FILE);
+        let (latency, members) = (folder.file(latency::FILE), folder.file(membership::FILE));
         Ok(Self {
             recorder: Recorder::start(folder, scenario, params, &about)?,
             latency: LatencyWriter::create(latency, scenario.robots.len())?,
             timings: Timings::new(scenario.robots.len()),
+            membership: MembershipWriter::new(members),
+            changes: Vec::new(),
             scenario: scenario.clone(),
             params: params.clone(),
             about,
@@ -66,6 +72,7 @@ impl Session {
         let names = (self.about.profile.as_str(), self.about.horizon.as_str());
         let mut summary = Summary::new(&self.scenario, &self.params, names, end, metrics.finish(), &self.timings);
         summary.policy = policy;
+        summary.absences = Absence::all(&self.changes, &self.scenario);
         summary.lateness = self.about.real_time.then(|| self.timings.lateness());
         let folder = self.recorder.finish(&summary)?;
         Ok((summary, folder))
@@ -76,6 +83,11 @@ impl Observer<ProcessTeam, RunHorizons> for Session {
     type Error = RecordError;
 
     fn tick(&mut self, seen: &RunTick<'_>) -> Result<Verdict, RecordError> {
+        let changes = seen.team.members().changes();
+        if changes.len() != self.changes.len() {
+            self.membership.write(changes)?; // before the tick that it explains
+            self.changes = changes.to_vec();
+        }
         self.record(seen.tick, seen.steps, &TickTimes::from(seen.team))?;
         Ok(Verdict::Continue)
     }

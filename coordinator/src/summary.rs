@@ -2,13 +2,16 @@
 
 use crate::guarantee;
 use crate::latency::{Latency, Percentiles};
+use crate::members::Change;
 use crate::policy::PolicySummary;
 use crate::record::{RecordError, SUMMARY_FILE};
 use crate::solver_check::SolverCheck;
 use crate::tick_parts::{TickParts, TickTimes};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
+use std::fmt;
 use std::path::Path;
+use vodca::membership::State;
 use vodca::metrics::RunSummary;
 use vodca::params::Params;
 use vodca::scenario::Scenario;
@@ -55,6 +58,9 @@ pub struct Summary {
     /// The figures that depend on the trajectory alone.
     #[serde(flatten)]
     pub run: RunSummary,
+    /// Who did not take part all the time.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub absences: Vec<Absence>,
     /// What robots that meet nobody need, for teams of up to 16 robots.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lower_bound: Option<LowerBound>,
@@ -97,6 +103,7 @@ impl Summary {
             guarantee: guarantee.statement,
             guarantee_broken: guarantee.broken,
             run,
+            absences: Vec::new(),
             lower_bound: (scenario.robots.len() <= BOUNDED).then(|| LowerBound::of(scenario, params)),
             tick_latency: timings.tick.percentiles(),
             tick_parts: timings.parts.percentiles(),
@@ -116,6 +123,53 @@ impl Summary {
         summary.solver_check = Some(check);
         let text = serde_json::to_string_pretty(&summary).map_err(|error| failed(error.to_string()))?;
         std::fs::write(&path, text + "\n").map_err(|source| RecordError::Write { path: path.clone(), source })
+    }
+}
+
+/// A robot did not take part for some time.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Absence {
+    /// Its number.
+    pub robot: usize,
+    /// Its name.
+    pub name: String,
+    /// Late: it was not heard in time. Lost: its process ended.
+    pub state: State,
+    /// The first tick that it missed.
+    pub tick: u64,
+    /// How it came about, and the last thing that it said.
+    pub why: String,
+    /// The tick with which it took part again; `None`: it did not.
+    pub until: Option<u64>,
+}
+
+impl fmt::Display for Absence {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { name, state, tick, why, until, .. } = self;
+        let what = if *state == State::Lost { "lost" } else { "late" };
+        write!(f, "{name} {what} at tick {tick}: it {why}")?;
+        until.map_or(Ok(()), |tick| write!(f, "; back at tick {tick}"))
+    }
+}
+
+impl Absence {
+    /// All of a run, in the order in which they began; who is late and then lost is told as lost since it was late.
+    pub fn all(changes: &[Change], scenario: &Scenario) -> Vec<Self> {
+        let mut all: Vec<Self> = Vec::new();
+        for Change { tick, robot, state, why, .. } in changes {
+            let open = all.iter_mut().find(|absence| absence.robot == *robot && absence.until.is_none());
+            match (state, open) {
+                (State::Late | State::Lost, Some(absence)) => (absence.state, absence.why) = (*state, why.clone()),
+                (State::Late | State::Lost, None) => {
+                    let name = scenario.robots.get(*robot).map_or_else(String::new, |robot| robot.name.clone());
+                    let (robot, state, tick, why) = (*robot, *state, *tick, why.clone());
+                    all.push(Self { robot, name, state, tick, why, until: None });
+                }
+                (_, Some(absence)) => absence.until = Some(*tick),
+                (_, None) => {}
+            }
+        }
+        all
     }
 }
 
@@ -144,7 +198,7 @@ impl Timings {
         self.tick.record_ns(times.duration_ns);
         self.late.record_ns(times.late_ns);
         self.parts.observe(times, steps);
-        for (latency, step) in self.solve.iter_mut().zip(steps) {
+        for (latency, step) in self.solve.iter_mut().zip(steps).filter(|(_, step)| step.status.took_part()) {
             latency.record_ns(step.solve_ns);
         }
     }

@@ -5,11 +5,12 @@
 
 use crate::clock::{Clock, Overruns};
 use crate::launch::{self, Agents};
+use crate::members::Members;
 use crate::own_runtime_dir::OwnRuntimeDir;
 use crate::roster::{PeerLost, Roster};
-use crate::run::{Options, Outcome, RunError, STALL};
+use crate::run::{OnLoss, Options, Outcome, RunError};
 use shared::exchange::CoordinatorPort;
-use shared::messages::{MAX_ROBOTS, Report, Stamps, kind};
+use shared::messages::{MAX_ROBOTS, Stamps};
 use shared::os;
 use shared::runtime_dir::{self, RuntimeDir};
 use shared::services::{self, ServiceError};
@@ -18,10 +19,16 @@ use shared::team::{FIRST_EPOCH, Setup, TeamFile, VERSION};
 use std::time::{Duration, Instant};
 use vodca::Position;
 use vodca::horizon::Horizon;
+use vodca::membership::State;
 use vodca::params::Params;
 use vodca::play::Playable;
 use vodca::scenario::{Scenario, ScenarioError};
 use vodca::step::Step;
+
+mod collect;
+mod losses;
+
+use collect::Wanted;
 
 /// How often a waiting coordinator looks for signals and ended processes.
 const LOOK_AROUND: Duration = Duration::from_millis(50);
@@ -83,15 +90,6 @@ pub(crate) struct EpisodeLayout {
     pub(crate) scenario: Scenario,
 }
 
-/// What a report may change.
-struct Heard<'a> {
-    roster: &'a mut Roster,
-    steps: &'a mut [Option<Step>],
-    stamps: &'a mut [Stamps],
-    measured: &'a mut [Position],
-    deadline: &'a mut Instant,
-}
-
 /// A team of processes.
 pub struct ProcessTeam {
     options: Options,
@@ -103,6 +101,7 @@ pub struct ProcessTeam {
     place: OwnRuntimeDir,
     stop: StopFlag,
     clock: Clock,
+    members: Members,
     epoch: u64,
     /// What has come of the tick that is under way.
     reported: Vec<Option<Step>>,
@@ -140,6 +139,7 @@ impl ProcessTeam {
                 + params.model.sample_time
                 + 5.0
                 + options.idle.as_secs_f64(),
+            chaos: options.chaos.clone(),
             place: place.0.clone(),
         };
         let path = options.run.join("iceoryx2.toml");
@@ -152,6 +152,7 @@ impl ProcessTeam {
         let sample_time = params.model.sample_time;
         Ok(Self {
             roster: Roster::new(options.run.clone(), names),
+            members: Members::new(scenario),
             setup: Setup { team: file, scenario: scenario.clone(), params: params.clone() },
             port,
             place,
@@ -182,22 +183,12 @@ impl ProcessTeam {
 
     /// Waits until every robot is there, and until all are connected.
     pub(crate) fn gather(&mut self, until: Instant) -> Result<(), Interrupt> {
-        let stall = if matches!(self.options.agents, Agents::ByHand) { self.options.start_patience } else { STALL };
-        for wanted in [kind::READY, kind::MET] {
-            self.roster.expect_all();
-            if wanted == kind::MET {
+        for wanted in [Wanted::Ready, Wanted::Met] {
+            self.members.expect_all();
+            if wanted == Wanted::Met {
                 self.port.meet()?;
             }
-            self.collect(None, until, |heard, robot, report| {
-                heard.roster.seen(robot, report.pid);
-                if report.kind == wanted && heard.roster.answer(robot) {
-                    heard.measured[robot] = report.next_measured.into();
-                    if wanted == kind::READY {
-                        *heard.deadline = until.min(Instant::now() + stall);
-                    }
-                }
-                Ok(())
-            })?;
+            self.collect(wanted, until)?;
         }
         Ok(())
     }
@@ -210,57 +201,9 @@ impl ProcessTeam {
 
     /// Sends everybody back to its start and waits until all are there.
     pub(crate) fn next_episode(&mut self) -> Result<(), Interrupt> {
-        self.roster.expect_all();
+        self.members.expect_all();
         self.epoch = self.port.next_episode()?;
-        let deadline = Instant::now() + self.options.tick_deadline;
-        self.collect(None, deadline, |heard, robot, report| {
-            if report.kind == kind::MET && heard.roster.answer(robot) {
-                heard.measured[robot] = report.next_measured.into();
-            }
-            Ok(())
-        })
-    }
-
-    /// Hands reports to `take` until no answer is missing.
-    fn collect(
-        &mut self,
-        tick: Option<u64>,
-        mut deadline: Instant,
-        mut take: impl FnMut(&mut Heard<'_>, usize, &Report) -> Result<(), PeerLost>,
-    ) -> Result<(), Interrupt> {
-        let start = Instant::now();
-        let mut looked = start;
-        loop {
-            let (mut taken, mut lost) = (0, None);
-            let Self { roster, port, reported: steps, stamps, measured, .. } = self;
-            let mut heard = Heard { roster, steps, stamps, measured, deadline: &mut deadline };
-            port.collect(|robot, report| {
-                taken += 1;
-                lost = lost.take().or(take(&mut heard, robot, report).err());
-            })?;
-            if let Some(lost) = lost {
-                return Err(Interrupt::Lost(lost));
-            }
-            if self.roster.missing() == 0 {
-                return Ok(());
-            }
-            if self.stop.is_set() {
-                return Err(Interrupt::Stopped);
-            }
-            // Looking costs a call per robot: only when nothing comes, or now and then.
-            let now = Instant::now();
-            if taken == 0 && now - looked >= LOOK_AROUND {
-                looked = now;
-                if let Some(lost) = self.roster.find_ended(tick) {
-                    return Err(Interrupt::Lost(lost));
-                }
-            }
-            if now >= deadline {
-                let how = format!("gave no answer for {:.1} s", (now - start).as_secs_f64());
-                return self.roster.first_missing(tick, how).map_or(Ok(()), |lost| Err(Interrupt::Lost(lost)));
-            }
-            self.port.wait(self.roster.missing(), (deadline - now).min(LOOK_AROUND));
-        }
+        self.collect(Wanted::Met, Instant::now() + self.options.tick_deadline)
     }
 
     /// Ends the team: in order as far as its robots still listen.
@@ -270,12 +213,24 @@ impl ProcessTeam {
                 self.roster.kill(lost.robot);
                 SHORT_GRACE
             }
+            _ if self.members.membership().count(State::Late) > 0 => SHORT_GRACE,
             _ => GRACE,
         };
+        self.members.paused().filter_map(|robot| self.roster.pid(robot)).for_each(os::resume);
         let told = self.port.stop();
         self.roster.ask_to_end();
         self.roster.wait_for_end(grace);
         told
+    }
+
+    /// The process that drives `robot`, if it lives.
+    pub fn pid(&self, robot: usize) -> Option<u32> {
+        self.roster.pid(robot)
+    }
+
+    /// Who takes part, and all that has changed.
+    pub fn members(&self) -> &Members {
+        &self.members
     }
 
     /// When what happened in the newest tick.
@@ -321,12 +276,13 @@ impl Playable for ProcessTeam {
             }
             let remaining = Duration::from_nanos(self.clock.remaining());
             if remaining.is_zero() {
+                self.wait_for_late(tick)?;
                 self.moments.asked = os::now_ns();
                 return Ok(());
             }
             std::thread::sleep(remaining.min(LOOK_AROUND));
-            if let Some(lost) = self.roster.find_ended(Some(tick)) {
-                return Err(Interrupt::Lost(lost));
+            if self.options.on_loss == OnLoss::Stop {
+                self.look_for_ended(Wanted::Tick(tick))?;
             }
         }
     }
@@ -336,29 +292,30 @@ impl Playable for ProcessTeam {
     }
 
     fn tick(&mut self, tick: u64, horizons: &[Horizon]) -> Result<(), Interrupt> {
-        self.roster.expect_all();
-        self.moments.announced = self.port.announce(tick, horizons)?;
+        self.welcome(tick)?;
+        let killed = self.strike(tick);
+        self.members.begin(tick);
+        self.moments.announced =
+            self.port.announce(tick, horizons, self.members.membership().members(), self.members.bodies())?;
         self.moments.rung = os::now_ns();
         self.moments.late = self.clock.begin(self.moments.announced);
-        let deadline = Instant::now() + self.options.tick_deadline;
-        self.collect(Some(tick), deadline, |heard, robot, report| {
-            if report.kind != kind::STEP || report.plan.tick != tick || !heard.roster.answer(robot) {
-                return Ok(());
-            }
-            heard.stamps[robot] = Stamps { collected: os::now_ns(), ..report.stamps };
-            heard.measured[robot] = report.next_measured.into();
-            heard.steps[robot] = report.to_step();
-            let strange = "sent a report that means nothing here; is its program of another version?";
-            let understood = heard.steps[robot].is_some();
-            if understood { Ok(()) } else { Err(heard.roster.lost(robot, Some(tick), strange.into())) }
-        })?;
+        self.miss_on_purpose(tick);
+        self.end_silent(tick)?;
+        if killed {
+            self.look_for_ended(Wanted::Tick(tick))?;
+        }
+        self.collect(Wanted::Tick(tick), Instant::now() + self.options.tick_deadline)?;
         self.moments.collected = os::now_ns();
-        self.finished.clear();
-        self.finished.extend(self.reported.iter_mut().filter_map(Option::take));
+        self.members.end();
+        self.finish(tick, horizons);
         Ok(())
     }
 
     fn steps(&self) -> &[Step] {
         &self.finished
+    }
+
+    fn awaits_somebody(&self) -> bool {
+        self.members.awaits_somebody()
     }
 }

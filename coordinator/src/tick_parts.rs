@@ -80,7 +80,7 @@ impl TickParts {
             return;
         }
         self.announce.record_ns(times.announce_ns);
-        for (stamps, step) in times.stamps.iter().zip(steps) {
+        for (stamps, step) in times.stamps.iter().zip(steps).filter(|(_, step)| step.status.took_part()) {
             for (latency, duration) in self.parts.iter_mut().zip(parts(stamps, step)) {
                 latency.record_ns(duration);
             }

@@ -3,6 +3,7 @@
 
 pub mod bench;
 pub mod compare;
+pub mod faults;
 pub mod figures;
 pub mod golden;
 pub mod in_process;
@@ -11,6 +12,7 @@ pub mod parallel;
 pub mod range;
 pub mod replay;
 pub mod results;
+mod roll;
 #[cfg(test)]
 pub(crate) mod samples;
 pub mod search;

@@ -1,12 +1,14 @@
 //! Repeats a recorded run from its own folder and compares it byte for byte.
 
 use crate::in_process::drive_whole;
-use coordinator::record::{PARAMS_FILE, SCENARIO_FILE, horizons, trajectory};
+use crate::roll::Roll;
+use coordinator::record::{PARAMS_FILE, SCENARIO_FILE, horizons, membership, trajectory};
 use coordinator::solver_check::SolverCheck;
 use std::path::{Path, PathBuf};
 use vodca::horizon_source::{HorizonSource, HorizonSpec};
 use vodca::params::Params;
 use vodca::scenario::Scenario;
+use vodca::step::Step;
 use vodca::team::Team;
 
 /// Why a run cannot be repeated.
@@ -81,17 +83,34 @@ pub fn repeat(folder: &Path, check: bool) -> Result<(Repetition, Option<SolverCh
     let build = if check { Team::checked } else { Team::new };
     let mut team = build(&scenario, &params, scenario.seed);
     let mut positions: Vec<_> = scenario.robots.iter().map(|robot| robot.start).collect();
+    let changes = match read(membership::FILE) {
+        Ok(text) => membership::read(&text).map_err(|line| malformed(format!("{}, line {line}", membership::FILE)))?,
+        Err(ReplayError::Unreadable { source, .. }) if source.kind() == std::io::ErrorKind::NotFound => Vec::new(),
+        Err(error) => return Err(error),
+    };
+    if let Some(change) = changes.iter().find(|change| change.robot >= scenario.robots.len()) {
+        return Err(malformed(format!("there is no robot {}, which {} names", change.robot, membership::FILE)));
+    }
+    let mut roll = Roll::new(scenario.robots.len(), changes);
     if ticks > 0 {
         // What was recorded is what came out of the jitter.
         let script = HorizonSpec::Script(folder.join(horizons::FILE));
         let source = HorizonSource::new(&script, scenario.robots.len(), scenario.seed, 0)
             .map_err(|error| malformed(error.to_string()))?;
         let mut tick = 0;
-        drive_whole(&mut team, &scenario, &params, &source, |steps| {
+        let mut note = |steps: &[Step]| {
             trajectory::push_tick(&mut text, tick, steps);
             positions.iter_mut().zip(steps).for_each(|(position, step)| *position = step.next_position);
             tick += 1;
-        });
+        };
+        if roll.is_full() {
+            drive_whole(&mut team, &scenario, &params, &source, note);
+        } else {
+            for tick in 0..ticks {
+                let horizons: Vec<_> = (0..scenario.robots.len()).map(|robot| source.horizon(robot, tick)).collect();
+                note(team.step_without(&horizons, &roll.tick(tick)));
+            }
+        }
     }
     let whole = recorded.len() > text.len() || recorded.ends_with(",,,,,,\n");
     if whole {

@@ -24,6 +24,7 @@ pub(crate) fn record_ticks(folder: &std::path::Path, scenario: &str, params: &vo
         seed: scenario.seed,
         exchange: "none".into(),
         real_time: false,
+        chaos: None,
         command: vec![],
         versions: Versions::here(),
         machine: Machine::here(),

@@ -1,5 +1,6 @@
 //! What crosses a process border: messages, services, the exchange, the folder of a run.
 
+pub mod chaos;
 pub mod exchange;
 pub mod messages;
 pub mod os;

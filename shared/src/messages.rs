@@ -6,6 +6,7 @@
 
 use iceoryx2::prelude::ZeroCopySend;
 use vodca::horizon::{Horizon, MAX_HORIZON};
+use vodca::membership::State;
 use vodca::prediction::Prediction;
 use vodca::step::{Level, Status, Step};
 use vodca::{Input, Position};
@@ -34,6 +35,8 @@ pub mod kind {
     pub const STEP: u32 = 2;
     /// The robot is connected to every other robot, or at the start of a new episode.
     pub const MET: u32 = 3;
+    /// A robot that nobody waits for is there: it can be counted on again.
+    pub const HERE: u32 = 4;
 }
 
 /// The start of a tick, or the end of the run. Published by the coordinator; valid for `tick` only.
@@ -41,7 +44,7 @@ pub mod kind {
 /// nothing: the coordinator will miss its report.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, ZeroCopySend)]
-#[type_name("vodca/Announcement/2")]
+#[type_name("vodca/Announcement/3")]
 pub struct Announcement {
     /// Which episode of this run it belongs to, from [`crate::team::FIRST_EPOCH`]; robots ignore older ones.
     pub epoch: u64,
@@ -52,9 +55,28 @@ pub struct Announcement {
     /// One of [`order`].
     pub order: u32,
     /// How many plans follow (0 in a peer exchange).
-    pub plans: u32,
+    pub plans: u16,
+    /// How many robots did not take part in the tick before.
+    pub absent: u16,
+    /// Where those stand, m, by robot; the others' entries mean nothing.
+    pub bodies: [[f64; 2]; MAX_ROBOTS],
+    /// Which life of every robot counts ([`Author::life`]).
+    pub lives: [u32; MAX_ROBOTS],
+    /// How every robot takes part, a [`State`] as its number.
+    pub states: [u8; MAX_ROBOTS],
     /// N_i^k by robot in the announcement of a tick.
     pub horizons: [u8; MAX_ROBOTS],
+}
+
+/// Who says something.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Author {
+    /// Run identity, as in [`Announcement::epoch`].
+    pub epoch: u64,
+    /// Robot number.
+    pub robot: usize,
+    /// Which of the processes that have driven this robot, from 1: what an earlier one says does not count.
+    pub life: u32,
 }
 
 /// A robot's plan of one tick. Published by the robot: in a peer exchange to every other robot, in
@@ -62,7 +84,7 @@ pub struct Announcement {
 /// the older one together with its tick and lets the controller decide.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, ZeroCopySend)]
-#[type_name("vodca/Plan/1")]
+#[type_name("vodca/Plan/2")]
 pub struct Plan {
     /// Run identity, as in [`Announcement::epoch`].
     pub epoch: u64,
@@ -71,9 +93,11 @@ pub struct Plan {
     /// When it was published, ns.
     pub stamp: u64,
     /// Whose plan, 0-based.
-    pub robot: u32,
+    pub robot: u16,
     /// N_i^k.
-    pub horizon: u32,
+    pub horizon: u16,
+    /// As in [`Author::life`].
+    pub life: u32,
     /// x_i^d as the robot aims at it, m.
     pub set_point: [f64; 2],
     /// Where it looks on its way there, m.
@@ -104,7 +128,7 @@ pub struct Stamps {
 /// no end and, past the deadline, the run has none of this robot.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, ZeroCopySend)]
-#[type_name("vodca/Report/3")]
+#[type_name("vodca/Report/4")]
 pub struct Report {
     /// The plan (its tick and robot are the report's too).
     pub plan: Plan,
@@ -202,7 +226,29 @@ pub mod answer {
 
 impl Default for Announcement {
     fn default() -> Self {
-        Self { epoch: 0, tick: 0, stamp: 0, order: 0, plans: 0, horizons: [0; MAX_ROBOTS] }
+        Self {
+            epoch: 0,
+            tick: 0,
+            stamp: 0,
+            order: 0,
+            plans: 0,
+            absent: 0,
+            bodies: [[0.0; 2]; MAX_ROBOTS],
+            lives: [0; MAX_ROBOTS],
+            states: [0; MAX_ROBOTS],
+            horizons: [0; MAX_ROBOTS],
+        }
+    }
+}
+
+impl Announcement {
+    /// Who did not take part in the tick before, how, and where it stands, m.
+    pub fn absent(&self) -> impl Iterator<Item = (usize, State, Position)> + '_ {
+        let all = if self.absent == 0 { 0 } else { MAX_ROBOTS };
+        self.states[..all].iter().enumerate().filter_map(|(robot, &number)| {
+            let state = State::from_number(number).filter(|state| state.has_stood())?;
+            Some((robot, state, Position::from(self.bodies[robot])))
+        })
     }
 }
 
@@ -235,21 +281,28 @@ impl Plan {
         stamp: 0,
         robot: 0,
         horizon: 0,
+        life: 0,
         set_point: [0.0; 2],
         toward: [0.0; 2],
         states: [[0.0; 2]; MAX_HORIZON + 1],
     };
 
     /// Puts a prediction into its message.
-    pub fn new(epoch: u64, tick: u64, robot: usize, prediction: &Prediction) -> Self {
-        let mut plan = Plan { epoch, tick, robot: robot as u32, ..Plan::EMPTY };
-        plan.horizon = prediction.horizon().steps() as u32;
+    pub fn new(author: Author, tick: u64, prediction: &Prediction) -> Self {
+        let mut plan = Plan { tick, ..Self::by(author) };
+        plan.horizon = prediction.horizon().steps() as u16;
         plan.set_point = prediction.set_point.into();
         plan.toward = prediction.toward.into();
         for (to, from) in plan.states.iter_mut().zip(prediction.states()) {
             *to = (*from).into();
         }
         plan
+    }
+
+    /// A plan of `author` that says nothing.
+    const fn by(author: Author) -> Self {
+        let Author { epoch, robot, life } = author;
+        Plan { epoch, robot: robot as u16, life, ..Plan::EMPTY }
     }
 
     /// The prediction in it; `None` when its horizon is not one (a message is never trusted).
@@ -262,11 +315,11 @@ impl Plan {
 }
 
 impl Report {
-    /// A report of nothing but being there ([`kind::READY`], [`kind::MET`]); `measured` is where the robot
-    /// measures itself at the start of tick 0, m.
-    pub fn presence(epoch: u64, robot: usize, kind: u32, measured: Position) -> Self {
+    /// A report of nothing but being there ([`kind::READY`], [`kind::MET`], [`kind::HERE`]); `measured` is where the
+    /// robot measures itself, m.
+    pub fn presence(author: Author, kind: u32, measured: Position) -> Self {
         Report {
-            plan: Plan { epoch, robot: robot as u32, ..Plan::EMPTY },
+            plan: Plan::by(author),
             kind,
             pid: std::process::id(),
             position: [0.0; 2],
@@ -287,9 +340,9 @@ impl Report {
     }
 
     /// Puts what a robot did into its message.
-    pub fn step(epoch: u64, tick: u64, robot: usize, step: &Step) -> Self {
+    pub fn step(author: Author, tick: u64, step: &Step) -> Self {
         Report {
-            plan: Plan::new(epoch, tick, robot, &step.plan),
+            plan: Plan::new(author, tick, &step.plan),
             position: step.position.into(),
             measured: step.measured.into(),
             input: step.input.into(),
@@ -302,7 +355,7 @@ impl Report {
             status: step.status.number(),
             filtered: u8::from(step.filtered),
             horizon: step.horizon.steps() as u8,
-            ..Report::presence(epoch, robot, kind::STEP, step.next_measured)
+            ..Report::presence(author, kind::STEP, step.next_measured)
         }
     }
 
@@ -332,6 +385,8 @@ impl Report {
 mod tests {
     use super::*;
 
+    const AUTHOR: Author = Author { epoch: 7, robot: 13, life: 2 };
+
     fn some_step() -> Step {
         let states = [Position::new(1.0, -0.1), Position::new(1.1, 0.2), Position::new(1.0 / 3.0, 0.7)];
         Step {
@@ -355,14 +410,15 @@ mod tests {
     #[test]
     fn a_step_survives_the_journey_unchanged() {
         let step = some_step();
-        let report = Report::step(7, 42, 13, &step);
-        assert_eq!((report.plan.epoch, report.plan.tick, report.plan.robot), (7, 42, 13));
+        let report = Report::step(AUTHOR, 42, &step);
+        let Plan { epoch, tick, robot, life, .. } = report.plan;
+        assert_eq!((epoch, tick, robot, life), (7, 42, 13, 2));
         assert_eq!(report.to_step(), Some(step));
     }
 
     #[test]
     fn bytes_that_mean_nothing_are_refused() {
-        let good = Report::step(1, 2, 3, &some_step());
+        let good = Report::step(AUTHOR, 2, &some_step());
         let spoilt = |spoil: fn(&mut Report)| {
             let mut report = good;
             spoil(&mut report);
@@ -372,12 +428,28 @@ mod tests {
         assert_eq!(spoilt(|r| r.plan.horizon = 50), None);
         assert_eq!(spoilt(|r| r.horizon = 0), None);
         assert_eq!(spoilt(|r| r.level = 9), None);
-        assert_eq!(spoilt(|r| r.status = 5), None);
+        assert_eq!(spoilt(|r| r.status = 7), None);
+    }
+
+    #[test]
+    fn who_is_absent_is_told_and_numbers_that_mean_nothing_are_not() {
+        let mut announcement = Announcement { absent: 2, ..Announcement::default() };
+        announcement.states[..4].copy_from_slice(&[
+            State::Driving.number(),
+            State::Lost.number(),
+            77,
+            State::Back.number(),
+        ]);
+        announcement.bodies[1] = [1.0, -2.0];
+        let told: Vec<_> = announcement.absent().collect();
+        assert_eq!(told, [(1, State::Lost, Position::new(1.0, -2.0)), (3, State::Back, Position::zeros())]);
+        announcement.absent = 0;
+        assert_eq!(announcement.absent().count(), 0);
     }
 
     #[test]
     fn payloads_have_no_hidden_padding() {
-        assert_eq!(size_of::<Announcement>(), 3 * 8 + 2 * 4 + MAX_ROBOTS);
+        assert_eq!(size_of::<Announcement>(), 3 * 8 + 8 + MAX_ROBOTS * (16 + 4 + 1 + 1));
         assert_eq!(size_of::<Observation>(), 4 * 8 + MAX_ROBOTS * 16);
         assert_eq!(size_of::<PolicyAnswer>(), 5 * 8 + 2 * 4 + 32 + 5 * MAX_ROBOTS);
         assert_eq!(size_of::<Plan>(), 3 * 8 + 2 * 4 + 2 * 16 + 50 * 16);

@@ -1,7 +1,10 @@
 //! The few things we ask of the operating system beyond the standard library.
 
-use rustix::process::{Pid, Resource, Signal, getppid, getrlimit, setrlimit};
+use rustix::event::{PollFd, PollFlags, poll};
+use rustix::io::Errno;
+use rustix::process::{Pid, PidfdFlags, Resource, Signal, getppid, getrlimit, pidfd_open, setrlimit};
 use rustix::time::{ClockId, clock_gettime};
+use std::os::fd::OwnedFd;
 
 /// Nanoseconds of the monotonic clock: comparable between processes of one host.
 pub fn now_ns() -> u64 {
@@ -19,6 +22,31 @@ pub fn cpu_ns() -> u64 {
 /// `parent` (it may have ended before we asked).
 pub fn die_with_parent(parent: u32) -> bool {
     let asked = rustix::process::set_parent_process_death_signal(Some(Signal::KILL)).is_ok();
+    let ours = getppid().is_some_and(|pid| pid.as_raw_nonzero().get() as u32 == parent);
+    asked && ours
+}
+
+/// A process that can be waited for without a race: its number may be used again, this stays its own.
+#[derive(Debug)]
+pub struct ProcessHandle(OwnedFd);
+
+impl ProcessHandle {
+    /// Of process `pid`; `None` when there is none.
+    pub fn open(pid: u32) -> Option<Self> {
+        pidfd_open(Pid::from_raw(pid as i32)?, PidfdFlags::empty()).ok().map(Self)
+    }
+
+    /// Waits until it has ended.
+    pub fn wait(&self) {
+        let mut ended = [PollFd::new(&self.0, PollFlags::IN)];
+        while poll(&mut ended, None) == Err(Errno::INTR) {}
+    }
+}
+
+/// Lets the kernel continue this process, should it be stopped, when its parent ends: it has to end then, too. Says
+/// whether the parent is still `parent`.
+pub fn wake_with_parent(parent: u32) -> bool {
+    let asked = rustix::process::set_parent_process_death_signal(Some(Signal::CONT)).is_ok();
     let ours = getppid().is_some_and(|pid| pid.as_raw_nonzero().get() as u32 == parent);
     asked && ours
 }
@@ -52,8 +80,27 @@ pub fn user_id() -> u32 {
 
 /// Asks process `pid` to end (SIGTERM).
 pub fn terminate(pid: u32) {
+    signal(pid, Signal::TERM);
+}
+
+/// Ends process `pid` at once (SIGKILL).
+pub fn kill(pid: u32) {
+    signal(pid, Signal::KILL);
+}
+
+/// Stops process `pid` until [`resume`] (SIGSTOP).
+pub fn pause(pid: u32) {
+    signal(pid, Signal::STOP);
+}
+
+/// Lets a stopped process go on (SIGCONT).
+pub fn resume(pid: u32) {
+    signal(pid, Signal::CONT);
+}
+
+fn signal(pid: u32, signal: Signal) {
     if let Some(pid) = Pid::from_raw(pid as i32) {
-        let _ = rustix::process::kill_process(pid, Signal::TERM); // gone already is fine
+        let _ = rustix::process::kill_process(pid, signal); // gone already is fine
     }
 }
 
@@ -65,6 +112,16 @@ mod tests {
     fn the_clock_does_not_run_backwards() {
         let earlier = now_ns();
         assert!(now_ns() >= earlier);
+    }
+
+    #[test]
+    fn the_end_of_a_process_is_waited_for() {
+        let mut child = std::process::Command::new("sleep").arg("60").spawn().unwrap();
+        let handle = ProcessHandle::open(child.id()).unwrap();
+        kill(child.id());
+        handle.wait();
+        child.wait().unwrap();
+        assert!(ProcessHandle::open(u32::MAX / 2).is_none());
     }
 
     #[test]

@@ -7,12 +7,14 @@
 use crate::os;
 use serde::{Deserialize, Serialize};
 use std::fmt;
-use std::fs;
+use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
 
 /// Every shared-memory file of ours starts like this.
 const PREFIX: &str = "vodca_";
+/// Name of the file in a place that everybody who takes part has locked.
+const ATTENDEES: &str = "attendees";
 /// Where shared-memory files appear.
 const SHARED_MEMORY: &str = "/dev/shm";
 
@@ -82,6 +84,17 @@ impl RuntimeDir {
         !owner_is_gone(self.id()) && Path::new(&self.root).is_dir()
     }
 
+    /// Takes part in the run: whoever leaves as the last one after its owner has died tidies up.
+    ///
+    /// # Errors
+    /// The place is gone.
+    pub fn attend(&self) -> io::Result<Attendee> {
+        let path = Path::new(&self.root).join(ATTENDEES);
+        let file = File::options().read(true).write(true).create(true).truncate(false).open(path)?;
+        file.lock_shared()?;
+        Ok(Attendee { file, place: self.clone() })
+    }
+
     fn id(&self) -> &str {
         self.prefix.trim_start_matches(PREFIX).trim_end_matches('_')
     }
@@ -91,6 +104,24 @@ impl RuntimeDir {
         remove_shared_memory(|prefix| prefix == self.id());
         let _ = fs::remove_dir_all(&self.root);
         let _ = fs::remove_dir(base()); // only when no other run is there
+    }
+}
+
+/// A process that takes part in a run. Dropping it leaves the run; drop it after everything that uses the run's files.
+#[derive(Debug)]
+pub struct Attendee {
+    /// Locked, shared, as long as this process takes part; the kernel unlocks it however it ends.
+    file: File,
+    place: RuntimeDir,
+}
+
+impl Drop for Attendee {
+    fn drop(&mut self) {
+        // Of several that leave at once the last one finds nobody's lock: each gives up its own before it looks.
+        let alone = |file: &File| file.unlock().is_ok() && file.try_lock().is_ok();
+        if !self.place.is_owned() && alone(&self.file) {
+            self.place.remove();
+        }
     }
 }
 
@@ -143,6 +174,22 @@ mod tests {
         assert!(!Path::new(&first.root).exists() && !Path::new(&shared).exists());
         assert!(Path::new(&second.root).exists());
         second.remove();
+    }
+
+    #[test]
+    fn the_last_one_that_leaves_a_run_without_an_owner_tidies_up() {
+        let mut owner = std::process::Command::new("sleep").arg("60").spawn().unwrap();
+        let id = format!("{:x}-{:x}-0", owner.id(), os::start_time(owner.id()).unwrap());
+        let root = base().join(&id);
+        fs::create_dir_all(&root).unwrap();
+        let place = RuntimeDir { prefix: format!("{PREFIX}{id}_"), root: root.to_string_lossy().into_owned() };
+        let mut all: Vec<Attendee> = (0..3).map(|_| place.attend().unwrap()).collect();
+        all.pop();
+        assert!(root.exists(), "its owner lives and tidies up itself");
+        owner.kill().unwrap();
+        owner.wait().unwrap();
+        drop(all); // a run that starts just now may have swept it already
+        assert!(!root.exists());
     }
 
     #[test]

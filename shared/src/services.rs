@@ -95,6 +95,7 @@ pub struct Services {
     reports: Channel<Report>,
     plans: Option<Channel<Plan>>,
     wake: Arc<WakePage>,
+    node: Node<Ipc>,
 }
 
 /// Whether services are made or opened.
@@ -121,9 +122,21 @@ impl Services {
             announcements: maker.announcements("vodca/announcements")?,
             reports: maker.channel("vodca/reports", maker.everyone, maker.few)?,
             plans: if peer { Some(maker.channel("vodca/plans", maker.everyone, maker.everyone)?) } else { None },
-            wake: Arc::new(WakePage::new(place, role)?),
+            wake: Arc::new(WakePage::new(place, robots, role)?),
+            node: maker.node,
             place: place.clone(),
         })
+    }
+
+    /// A life for this process as robot `robot`, from 1: no two processes get the same.
+    pub fn next_life(&self, robot: usize) -> u32 {
+        self.wake.next_life(robot)
+    }
+
+    /// Frees what processes held that were killed: their ports would take up the room of those who come after them.
+    /// What cannot be freed now is tried again with the next call.
+    pub fn clean_up_after_dead(&self) {
+        let _ = self.node.try_cleanup_dead_nodes();
     }
 
     /// The coordinator's voice. `frame`: most plans an announcement carries.

@@ -1,6 +1,7 @@
 //! What every process of a run must know and no scenario or parameter says: `team.toml` in the
 //! folder of the run, written by the coordinator before it starts anybody.
 
+use crate::chaos::Chaos;
 use crate::exchange::Kind;
 use crate::messages::MAX_ROBOTS;
 use crate::runtime_dir::RuntimeDir;
@@ -23,7 +24,7 @@ pub const PARAMS_FILE: &str = "params.toml";
 pub const FIRST_EPOCH: u64 = 1;
 
 /// Version of the team's file.
-pub const VERSION: u32 = 2;
+pub const VERSION: u32 = 3;
 
 /// How the processes of a run find and treat each other.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -44,6 +45,9 @@ pub struct TeamFile {
     pub start_patience: f64,
     /// How long a robot waits between two ticks before it takes the coordinator for dead, s.
     pub silence_limit: f64,
+    /// Faults on purpose.
+    #[serde(default, skip_serializing_if = "Chaos::is_none")]
+    pub chaos: Chaos,
     /// Where the shared files are.
     pub place: RuntimeDir,
 }

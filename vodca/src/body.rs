@@ -19,9 +19,13 @@ pub trait Body: Send {
     /// carried on by the input it was just given.
     fn measure(&mut self, tick: u64) -> Position;
 
-    /// Takes the input of the present tick, m/s per axis, held until the next call. A driver stops by itself when
-    /// no further one comes for two sample times.
+    /// Takes the input of the present tick, m/s per axis. It is good for this tick and no longer: a driver stands by
+    /// itself when the next one does not come in time (command watchdog; ARCHITECTURE, the guarantee).
     fn apply(&mut self, input: Input);
+
+    /// The robot begins anew, and whoever kept its body says that it stands at `at` (m). A body in the world is where
+    /// it is.
+    fn place(&mut self, _at: Position) {}
 
     /// Where the robot truly is, m; `None` for a body in the world, of which only measurements are known.
     fn truth(&self) -> Option<Position> {
@@ -55,6 +59,10 @@ impl Body for SimulatedBody {
 
     fn apply(&mut self, input: Input) {
         self.position += input * self.sample_time;
+    }
+
+    fn place(&mut self, at: Position) {
+        self.position = at;
     }
 
     fn truth(&self) -> Option<Position> {

@@ -2,10 +2,12 @@
 //! and reported, but nothing is ever decided by it.
 
 use crate::horizon::Horizon;
+use crate::layout::Layout;
 use crate::mpc::cross_check::Comparison;
 use crate::prediction::Prediction;
 use crate::step::{Level, Status};
 use crate::{Input, Position};
+use std::sync::Arc;
 
 /// What a robot knows of another one: the newest it heard, with the tick it belongs to.
 #[derive(Clone, Debug)]
@@ -19,12 +21,15 @@ pub struct Neighbour {
     pub set_point: Position,
     /// Where it looks on its way there ([`Prediction::toward`]).
     pub toward: Position,
+    /// Its process has ended: it stands at `present` until it comes back, and is an obstacle of the layout
+    /// ([`crate::layout::Layout::with_lost`]).
+    pub lost: bool,
 }
 
 impl Neighbour {
     /// What everybody knows of everybody before the first tick: the start and the set-point.
     pub fn at_start(start: Position, set_point: Position) -> Self {
-        Self { plan: None, present: Some((0, start)), set_point, toward: set_point }
+        Self { plan: None, present: Some((0, start)), set_point, toward: set_point, lost: false }
     }
 }
 
@@ -67,6 +72,12 @@ pub struct Decision {
 pub trait Controller: Send {
     /// Decides tick `view.tick`. Called once per tick, ticks in order.
     fn tick(&mut self, view: &View<'_>) -> Decision;
+
+    /// Forgets everything: the next tick comes after ticks in which the robot did not take part.
+    fn restart(&mut self) {}
+
+    /// From the next tick on `layout` holds: bodies of lost robots have become obstacles, or are gone.
+    fn lay_out(&mut self, _layout: &Arc<Layout>) {}
 
     /// What solving every QP twice has found so far; `None`: that was not asked for, or there is no QP.
     fn comparison(&self) -> Option<Comparison> {

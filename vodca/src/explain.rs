@@ -71,6 +71,7 @@ impl Explainer {
             present: Some((*tick, step.position)),
             set_point: last.plan.set_point,
             toward: last.plan.toward,
+            lost: !step.status.took_part(),
         };
         let neighbours: Vec<Neighbour> = now.iter().zip(before).map(heard).collect();
         let Step { horizon, position, .. } = now[robot];

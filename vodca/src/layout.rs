@@ -4,7 +4,7 @@ use crate::Position;
 use crate::geometry::Disc;
 use crate::obstacles::Obstacles;
 use crate::params::Model;
-use crate::scenario::Scenario;
+use crate::scenario::{Obstacle, Scenario};
 use crate::way::{Filling, Route, Ways};
 
 /// Set-points, sizes, speeds and obstacles of a team.
@@ -54,6 +54,18 @@ impl Layout {
         let max_speed = (0..set_points.len()).map(|robot| scenario.max_speed(robot, model.max_speed)).collect();
         let Ways { routes, outside, filling } = Ways::new(&places, &owed, &obstacles, min_separation);
         Self { set_points, robot_extra, max_speed, obstacles, routes, outside, filling, room }
+    }
+
+    /// The layout of a scenario in which lost robots stand: `lost` says where (m), by robot number. Their bodies are
+    /// obstacles after the scenario's own.
+    pub fn with_lost(scenario: &Scenario, model: &Model, lost: &[Option<Position>]) -> Self {
+        let mut scenario = scenario.clone();
+        for (robot, at) in scenario.robots.iter().zip(lost) {
+            if let Some(position) = *at {
+                scenario.obstacles.push(Obstacle { name: robot.name.clone(), position, radius: robot.radius });
+            }
+        }
+        Self::of(&scenario, model)
     }
 
     /// Whether `robot` cannot make room at its set-point: two that stand side by side, each with a third of a

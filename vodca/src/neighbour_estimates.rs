@@ -1,6 +1,8 @@
 //! What a robot knows of the others, disturbed on purpose where the parameters say so. Draws depend on seed, tick, sender and listener only.
 
+use crate::Position;
 use crate::controller::Neighbour;
+use crate::membership::State;
 use crate::params::Disturbance;
 use crate::prediction::Prediction;
 use crate::random::{self, Use};
@@ -13,6 +15,8 @@ pub struct NeighbourEstimates {
     seed: u64,
     disturbance: Disturbance,
     neighbours: Vec<Neighbour>,
+    /// Set-points of the scenario by robot number, m.
+    set_points: Vec<Position>,
     /// Plans under way, `plan_delay` per sender, oldest first from `tick % plan_delay`.
     under_way: Vec<Option<(u64, Prediction)>>,
 }
@@ -26,6 +30,7 @@ impl NeighbourEstimates {
             seed,
             disturbance: disturbance.clone(),
             neighbours: robots.iter().map(|robot| Neighbour::at_start(robot.start, robot.set_point)).collect(),
+            set_points: robots.iter().map(|robot| robot.set_point).collect(),
             under_way: vec![None; robots.len() * disturbance.plan_delay],
         }
     }
@@ -66,6 +71,36 @@ impl NeighbourEstimates {
         }
     }
 
+    /// Takes note that robot `sender` did not take part in the tick before `tick` and stands at `at` (m), which
+    /// everybody is told. What was heard of it otherwise does not count.
+    pub fn note_absent(&mut self, tick: u64, sender: usize, state: State, at: Position) {
+        let delay = self.disturbance.plan_delay;
+        self.under_way[sender * delay..(sender + 1) * delay].fill(None);
+        let lost = state == State::Lost;
+        let set_point = if lost { at } else { self.set_points[sender] };
+        let plan = tick.checked_sub(1).map(|planned| (planned, Prediction::standing(at, set_point)));
+        let present = Some((tick, at));
+        self.neighbours[sender] = Neighbour { plan, present, set_point, toward: set_point, lost };
+    }
+
+    /// The listener begins anew with tick `tick`: it keeps what came with the plans of the tick before, and nothing
+    /// older.
+    pub fn restart(&mut self, tick: u64) {
+        let is_new = |at: u64| at + 1 == tick;
+        self.under_way.iter_mut().for_each(|plan| *plan = plan.take().filter(|(at, _)| is_new(*at)));
+        for (neighbour, &set_point) in self.neighbours.iter_mut().zip(&self.set_points) {
+            neighbour.plan = neighbour.plan.take().filter(|(at, _)| is_new(*at));
+            if neighbour.present.is_none_or(|(at, _)| at != tick) {
+                *neighbour = Neighbour { plan: None, present: None, set_point, toward: set_point, lost: false };
+            }
+        }
+    }
+
+    /// What another listener would know that has heard the same.
+    pub fn for_listener(&self, listener: usize) -> Self {
+        Self { listener, ..self.clone() }
+    }
+
     fn is_lost(&self, share: f64, tick: u64, sender: usize, what: u64) -> bool {
         if share == 0.0 {
             return false;
@@ -78,7 +113,6 @@ impl NeighbourEstimates {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Position;
 
     fn hearing(disturbance: Disturbance) -> NeighbourEstimates {
         let scenario = Scenario::resolve(Some("two_setpoint"), None).unwrap();

@@ -33,6 +33,11 @@ pub trait Playable {
 
     /// What every robot did in the newest tick, by robot number.
     fn steps(&self) -> &[Step];
+
+    /// Whether a robot that is lost comes back: the run does not end without it.
+    fn awaits_somebody(&self) -> bool {
+        false
+    }
 }
 
 /// What an observer wants after a tick.
@@ -85,14 +90,14 @@ impl<T, H, E, F: FnMut(&Tick<'_, T, H>) -> Result<Verdict, E>> Observer<T, H> fo
 pub struct Limits {
     /// K, the most ticks.
     pub max_ticks: u64,
-    /// Whether it also ends with the first tick after which everybody has arrived.
+    /// Whether it also ends with the first tick after which nobody is under way ([`RunMetrics::settled`]).
     pub until_arrival: bool,
 }
 
 /// How a run ended that came to its end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ending {
-    /// Everybody had arrived, or an observer had seen enough.
+    /// Nobody was under way any more, or an observer had seen enough.
     Over,
     /// All ticks were used up.
     OutOfTicks,
@@ -131,7 +136,7 @@ pub fn play<T: Playable, H: Horizons, E>(
         team.tick(tick, &chosen).map_err(Halt::Team)?;
         metrics.observe(tick, team.steps());
         let seen = Tick { tick, steps: team.steps(), metrics, team: &*team, horizons: &*horizons };
-        let mut over = limits.until_arrival && metrics.arrived_all();
+        let mut over = limits.until_arrival && metrics.settled() && !team.awaits_somebody();
         for observer in observers.iter_mut() {
             over |= observer.tick(&seen).map_err(Halt::Observer)? == Verdict::Over;
         }

@@ -46,6 +46,11 @@ impl Prediction {
         Self { horizon, states: std::array::from_fn(|step| state(step.min(last))), set_point, toward: set_point }
     }
 
+    /// The plan of a robot that stands at `at` (m).
+    pub fn standing(at: Position, set_point: Position) -> Self {
+        Self { horizon: Horizon::MAX, states: [at; MAX_HORIZON + 1], set_point, toward: set_point }
+    }
+
     /// The same plan of a robot that looks `toward` there (m) on its way.
     pub fn looking(mut self, toward: Position) -> Self {
         self.toward = toward;

@@ -34,6 +34,8 @@ pub enum Use {
     Search = 12,
     /// Directions in which a stuck robot backs off.
     BackOff = 13,
+    /// Faults on purpose.
+    Fault = 14,
     /// The learner's first weights, batches and action noise.
     Learning = 20,
 }

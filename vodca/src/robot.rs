@@ -10,7 +10,7 @@ use crate::mpc::cross_check::Comparison;
 use crate::neighbour_estimates::NeighbourEstimates;
 use crate::params::{ControllerKind, Params};
 use crate::scenario::Scenario;
-use crate::step::Step;
+use crate::step::{Status, Step};
 use crate::vodca_controller::VodcaController;
 use std::sync::Arc;
 use std::time::Instant;
@@ -60,6 +60,31 @@ impl Robot {
     /// Where the robot measures itself at the start of the next tick, m.
     pub fn measured(&self) -> Position {
         self.measured
+    }
+
+    /// Begins anew with tick `tick`, standing at `at` (m): it did not take part in the tick before.
+    pub fn restart(&mut self, tick: u64, at: Position) {
+        self.body.place(at);
+        self.measured = self.body.measure(tick);
+        self.controller.restart();
+    }
+
+    /// From the next tick on `layout` holds.
+    pub fn lay_out(&mut self, layout: &Arc<Layout>) {
+        self.controller.lay_out(layout);
+    }
+
+    /// Does not take part in tick `tick`: its body stands, and only measures itself.
+    pub fn stand(&mut self, tick: u64, horizon: Horizon, set_point: Position, status: Status) -> Step {
+        let at = self.place();
+        let before = self.measured;
+        self.measured = self.body.measure(tick + 1);
+        Step::absent(at, [before, self.measured], horizon, set_point, status)
+    }
+
+    /// Where a simulated body is, m; of a body in the world where it measures itself.
+    pub fn place(&self) -> Position {
+        self.body.truth().unwrap_or(self.measured)
     }
 
     /// Decides, moves and measures itself anew: one tick. `hearing` holds the others' plans of tick k - 1.

@@ -38,6 +38,10 @@ pub enum Status {
     Shifted = 3,
     /// No solver finished and there was no previous plan: the robot stands still.
     Stopped = 4,
+    /// The robot did not take part: nothing of it counted in time. It stands still.
+    Late = 5,
+    /// The robot did not take part: its process has ended. It stands still.
+    Lost = 6,
 }
 
 impl Level {
@@ -74,7 +78,8 @@ impl Level {
 
 impl Status {
     /// All of them, by number.
-    pub const ALL: [Status; 5] = [Status::Solved, Status::Relaxed, Status::Held, Status::Shifted, Status::Stopped];
+    pub const ALL: [Status; 7] =
+        [Status::Solved, Status::Relaxed, Status::Held, Status::Shifted, Status::Stopped, Status::Late, Status::Lost];
 
     /// Its word in every file; serde writes the same.
     pub const fn word(self) -> &'static str {
@@ -84,7 +89,14 @@ impl Status {
             Status::Held => "held",
             Status::Shifted => "shifted",
             Status::Stopped => "stopped",
+            Status::Late => "late",
+            Status::Lost => "lost",
         }
+    }
+
+    /// Whether the robot took part in the tick at all.
+    pub const fn took_part(self) -> bool {
+        !matches!(self, Status::Late | Status::Lost)
     }
 
     /// The status of this word.
@@ -135,6 +147,35 @@ pub struct Step {
     pub solve_ns: u64,
     /// Time of the whole step, from having all messages to having moved, ns. Not part of what is compared.
     pub step_ns: u64,
+}
+
+impl Step {
+    /// What is recorded of a robot that did not take part in a tick: it stands at `at` (m), measured there at its
+    /// start and end.
+    pub fn absent(
+        at: Position,
+        measured: [Position; 2],
+        horizon: Horizon,
+        set_point: Position,
+        status: Status,
+    ) -> Self {
+        Self {
+            position: at,
+            measured: measured[0],
+            input: Input::zeros(),
+            next_position: at,
+            next_measured: measured[1],
+            horizon,
+            rows: 0,
+            level: Level::Fallback,
+            status,
+            filtered: false,
+            plan: Prediction::standing(at, set_point),
+            detect_ns: 0,
+            solve_ns: 0,
+            step_ns: 0,
+        }
+    }
 }
 
 #[cfg(test)]

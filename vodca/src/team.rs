@@ -4,13 +4,14 @@
 use crate::Position;
 use crate::horizon::Horizon;
 use crate::layout::Layout;
+use crate::membership::State;
 use crate::mpc::cross_check::Comparison;
 use crate::neighbour_estimates::NeighbourEstimates;
 use crate::params::{Disturbance, Params};
 use crate::play::Playable;
 use crate::robot::Robot;
 use crate::scenario::Scenario;
-use crate::step::Step;
+use crate::step::{Status, Step};
 use std::convert::Infallible;
 use std::sync::Arc;
 
@@ -22,6 +23,19 @@ pub struct Team {
     steps: Vec<Step>,
     measured: Vec<Position>,
     tick: u64,
+    scenario: Scenario,
+    min_separation: f64,
+    /// Where lost robots stand as everybody's layout has it, m, by robot number; empty: nobody was ever lost.
+    lost: Vec<Option<Position>>,
+}
+
+/// How a robot takes part in one tick.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Attendance {
+    /// What everybody is told of it when the tick begins.
+    pub announced: State,
+    /// `None`: it takes part. Otherwise why it does not: [`Status::Late`] or [`Status::Lost`].
+    pub missing: Option<Status>,
 }
 
 impl Team {
@@ -59,6 +73,9 @@ impl Team {
             measured: robots.iter().map(Robot::measured).collect(),
             robots,
             tick: 0,
+            scenario: scenario.clone(),
+            min_separation: params.model.min_separation,
+            lost: Vec::new(),
         }
     }
 
@@ -76,6 +93,55 @@ impl Team {
         }
         self.tick += 1;
         &self.steps
+    }
+
+    /// [`Self::step`] of a team of which somebody misses the tick, or has missed the one before; `roll` is by robot
+    /// number.
+    pub fn step_without(&mut self, horizons: &[Horizon], roll: &[Attendance]) -> &[Step] {
+        let robots = self.robots.len();
+        if self.hearing.len() < robots {
+            self.hearing = (0..robots).map(|robot| self.hearing[0].for_listener(robot)).collect();
+        }
+        self.begin(roll);
+        self.steps.clear();
+        for (robot, &horizon) in horizons.iter().enumerate().take(robots) {
+            let missing = roll.get(robot).and_then(|attendance| attendance.missing);
+            self.steps.push(match missing {
+                None => self.robots[robot].step(self.tick, horizon, &self.hearing[robot]),
+                Some(status) => {
+                    self.robots[robot].stand(self.tick, horizon, self.scenario.robots[robot].set_point, status)
+                }
+            });
+        }
+        for (robot, step) in self.steps.iter().enumerate() {
+            if step.status.took_part() {
+                self.hearing.iter_mut().for_each(|hearing| hearing.hear(self.tick, robot, &step.plan));
+            }
+            self.measured[robot] = step.next_measured;
+        }
+        self.tick += 1;
+        &self.steps
+    }
+
+    /// What is announced with this tick: who is back begins anew, everybody learns who stands where.
+    fn begin(&mut self, roll: &[Attendance]) {
+        let at: Vec<Position> = self.robots.iter().map(Robot::place).collect();
+        let of = |robot: usize, state| roll.get(robot).is_some_and(|attendance| attendance.announced == state);
+        let lost: Vec<_> = (0..at.len()).map(|robot| of(robot, State::Lost).then_some(at[robot])).collect();
+        if lost != self.lost && (!self.lost.is_empty() || lost.iter().any(Option::is_some)) {
+            let layout = Arc::new(Layout::with_lost(&self.scenario, self.min_separation, &lost));
+            self.robots.iter_mut().for_each(|robot| robot.lay_out(&layout));
+            self.lost = lost;
+        }
+        for robot in (0..at.len()).filter(|&robot| of(robot, State::Back)) {
+            self.hearing[robot].restart(self.tick);
+            self.robots[robot].restart(self.tick, at[robot]);
+        }
+        for (robot, attendance) in roll.iter().enumerate().filter(|(_, attendance)| attendance.announced.has_stood()) {
+            for hearing in &mut self.hearing {
+                hearing.note_absent(self.tick, robot, attendance.announced, at[robot]);
+            }
+        }
     }
 
     /// Where every robot measures itself at the start of the next tick, m, by robot number.

@@ -74,7 +74,7 @@ impl VodcaController {
             memory: ConflictMemory::default(),
             traffic: Traffic::with_capacity(robots, &params.aim),
             standing: Standing::of(layout),
-            rests: [&layout.routes[robot], &layout.outside[robot]].map(|route| [Rest::of(route), Rest::of(route)]),
+            rests: rests(layout, robot),
             way: Path::straight(layout.set_points[robot], layout.set_points[robot]),
             on: layout.set_points[robot],
             regards: Vec::with_capacity(robots),
@@ -108,7 +108,7 @@ impl VodcaController {
         }
         traffic.clear();
         for (other, neighbour) in view.neighbours.iter().enumerate().filter(|(other, _)| *other != *robot) {
-            if let Some((_, from)) = neighbour.present {
+            if let Some((_, from)) = neighbour.present.filter(|_| !neighbour.lost) {
                 let separation = layout.owed(model.min_separation, *robot, other);
                 traffic.add(StraightMotion { from, to: neighbour.toward, stride: stride(other) }, separation);
             }
@@ -145,7 +145,12 @@ impl VodcaController {
         if !self.params.cell.enabled {
             return;
         }
-        let own = self.previous.as_ref().map_or(view.position, |previous| previous.prediction.state(1));
+        let own = match &self.previous {
+            Some(previous) => previous.prediction.state(1),
+            // It begins anew; the others build their cells from where it was announced to stand.
+            None if view.tick > 0 => view.neighbours[self.robot].present.map_or(view.position, |(_, at)| at),
+            None => view.position,
+        };
         let Self { robot, layout, cell, params, .. } = self;
         let noise = params.cell.noise_bound;
         let escape = params.cell.escape + noise;
@@ -154,6 +159,7 @@ impl VodcaController {
             let separation = layout.owed(usual, *robot, other);
             let stride = params.model.sample_time * layout.max_speed[other];
             match neighbour.present {
+                _ if neighbour.lost => {} // an obstacle of the layout
                 Some((tick, position)) if tick == view.tick => {
                     let present = Present { position, separation, moves: Some(stride) };
                     cell.keep_away(own, &present, escape, *robot < other);
@@ -247,6 +253,11 @@ impl VodcaController {
     }
 }
 
+/// Room for what is left of the ways of `robot`.
+fn rests(layout: &Layout, robot: usize) -> [[Rest; 2]; 2] {
+    [&layout.routes[robot], &layout.outside[robot]].map(|route| [Rest::of(route), Rest::of(route)])
+}
+
 /// `axis` within +-`bound`, m/s; what is not a number becomes standing still.
 fn bounded(axis: f64, bound: f64) -> f64 {
     if axis.is_nan() { 0.0 } else { axis.clamp(-bound, bound) }
@@ -274,6 +285,20 @@ impl Controller for VodcaController {
         Decision { input, plan: prediction, rows: rows as u32, level, status, filtered, detect_ns, solve_ns }
     }
 
+    fn restart(&mut self) {
+        self.previous = None;
+        self.memory = ConflictMemory::default();
+    }
+
+    fn lay_out(&mut self, layout: &Arc<Layout>) {
+        let hazards = layout.set_points.len() + layout.obstacles.len();
+        self.rests = rests(layout, self.robot);
+        self.standing = Standing::with_capacity(hazards);
+        self.rows.reserve(2 * hazards);
+        self.cell.rows.reserve(hazards);
+        self.layout = layout.clone();
+    }
+
     fn comparison(&self) -> Option<Comparison> {
         self.ladder.comparison()
     }
@@ -296,7 +321,7 @@ pub fn hazards<'a>(
     let neighbours = others.filter_map(move |(other, neighbour)| {
         let separation = layout.owed(usual, robot, other);
         let wish = || wish(params.model.sample_time * layout.max_speed[other], neighbour);
-        if regards[other] == Regard::Stays {
+        if neighbour.lost || regards[other] == Regard::Stays {
             return None;
         }
         if let Some(course) = (regards[other] == Regard::Wish).then(wish).flatten() {

@@ -2,11 +2,13 @@
 
 use vodca::Position;
 use vodca::horizon::Horizon;
+use vodca::membership::State;
 use vodca::metrics::RunMetrics;
 use vodca::params::Params;
 use vodca::random::{self, Use};
 use vodca::scenario::{Obstacle, Robot, Scenario};
-use vodca::team::Team;
+use vodca::step::Status;
+use vodca::team::{Attendance, Team};
 
 /// Robots as dense as they fit, some exactly 1.5 m apart, with set-points anywhere among them.
 fn crowd(seed: u64) -> Scenario {
@@ -63,6 +65,73 @@ fn crowds_keep_their_separation_whatever_the_horizons() {
     for seed in 0..400 {
         let least = least_separation(&crowd(seed), &params);
         assert!(least >= 1.5 - 1e-7, "seed {seed}: {least}");
+    }
+}
+
+/// Who takes part in the next tick, when every robot misses one in ten, dies in every second case, and comes back after
+/// some ticks.
+fn roll(states: &mut [State], seed: u64, tick: u64) -> Vec<Attendance> {
+    let next = |(robot, state): (usize, &mut State)| {
+        let mut draw = random::stream(seed, Use::Fault, robot as u64, tick);
+        let announced = *state;
+        let misses = random::unit(&mut draw) < 0.1;
+        let dies = random::unit(&mut draw) < 0.5;
+        let returns = random::unit(&mut draw) < 0.3;
+        let missing = match announced {
+            State::Late => Some(Status::Late),
+            State::Lost => Some(Status::Lost),
+            _ if misses && dies => Some(Status::Lost),
+            _ if misses => Some(Status::Late),
+            _ => None,
+        };
+        *state = match missing {
+            Some(_) if returns => State::Back,
+            Some(Status::Lost) => State::Lost,
+            Some(_) => State::Late,
+            None => State::Driving,
+        };
+        Attendance { announced, missing }
+    };
+    states.iter_mut().enumerate().map(next).collect()
+}
+
+#[test]
+fn crowds_keep_their_separation_whoever_is_late_dies_or_comes_back() {
+    for seed in 0..300 {
+        let mut params = Params::safe();
+        params.disturbance.position_loss = if seed % 3 == 0 { 0.2 } else { 0.0 };
+        params.disturbance.plan_delay = (seed % 2) as usize;
+        let scenario = crowd(seed);
+        let robots = scenario.robots.len();
+        let (mut metrics, mut team) = (RunMetrics::new(&scenario, &params), Team::new(&scenario, &params, seed));
+        let (mut states, mut absent) = (vec![State::Driving; robots], 0);
+        for tick in 0..scenario.max_ticks {
+            let horizons: Vec<Horizon> = (0..robots).map(|robot| Horizon::random(seed, robot, tick)).collect();
+            let before: Vec<Position> = team.measured().to_vec();
+            let steps = team.step_without(&horizons, &roll(&mut states, seed, tick));
+            for (step, before) in steps.iter().zip(before).filter(|(step, _)| !step.status.took_part()) {
+                absent += 1;
+                assert_eq!((step.position, step.next_position), (before, before), "who does not take part stands");
+            }
+            metrics.observe(tick, steps);
+        }
+        let least = metrics.min_separation();
+        assert!(least >= 1.5 - 1e-7, "seed {seed}: {least}");
+        assert!(absent > 0 || robots < 4, "seed {seed}");
+    }
+}
+
+#[test]
+fn a_team_of_which_nobody_is_ever_absent_drives_as_if_nobody_could_be() {
+    let (scenario, params) = (crowd(5), Params::safe());
+    let robots = scenario.robots.len();
+    let (mut one, mut other) = (Team::new(&scenario, &params, 5), Team::new(&scenario, &params, 5));
+    let all = vec![Attendance { announced: State::Driving, missing: None }; robots];
+    for tick in 0..40 {
+        let horizons: Vec<Horizon> = (0..robots).map(|robot| Horizon::random(5, robot, tick)).collect();
+        let place = |step: &vodca::step::Step| step.next_position;
+        let expected: Vec<Position> = one.step(&horizons).iter().map(place).collect();
+        assert_eq!(other.step_without(&horizons, &all).iter().map(place).collect::<Vec<_>>(), expected);
     }
 }
 

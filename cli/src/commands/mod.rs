@@ -1,8 +1,10 @@
 //! The subcommands: each file holds one command's arguments and its work.
 
+pub mod agent;
 pub mod bench;
 pub mod compare;
 pub mod evaluate;
+pub mod faults;
 pub mod figures;
 pub mod former;
 pub mod golden;
@@ -14,6 +16,7 @@ pub mod report;
 pub mod results;
 pub mod rollout;
 pub mod run;
+mod run_losses;
 pub mod run_policy;
 pub mod scenario;
 pub mod search;

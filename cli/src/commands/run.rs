@@ -1,6 +1,7 @@
 //! `run`: a team with one process per robot.
 
 use super::parameter_args::{ParameterArgs, TeamArgs};
+use super::run_losses::LossArgs;
 use super::run_policy::PolicyArgs;
 use crate::commands::report as page;
 use crate::exit::{self, Ending, Failure};
@@ -35,9 +36,11 @@ Examples:
   ./run.sh 2 --profile paper --horizon fixed:9,40
   ./run.sh 8 --scenario my_layout.toml --set vodca.rows=each --out my_run
   ./run.sh 14 --policy policies/exchange_14
+  ./run.sh 14 --real-time --respawn 3 --chaos kill:0.002,drop:0.01,seed:7
   ./run.sh 14 --horizon script:runs/20260131-120000-ex14_d-14/horizons.csv
 Without --scenario: 2 two_setpoint, 4 four_gate, 14 ex14_d, otherwise a ring.
-Exit codes: 0 arrived, or asked to stop; 1 not arrived or collided; 2 wrong usage; 3 a robot's process was lost.")]
+Exit codes: 0 arrived, or asked to stop; 1 not arrived, collided or lost on the way; 2 wrong usage; 3 a robot's process
+was lost before the first tick, or with --on-loss stop.")]
 pub struct Args {
     /// Number of robots
     #[arg(value_name = "N", required_unless_present = "scenario", value_parser = number_of_robots)]
@@ -82,6 +85,8 @@ pub struct Args {
     /// Serve the scene to Foxglove or Lichtblick on this machine (ws://127.0.0.1:PORT) while the team drives
     #[arg(long, value_name = "PORT", num_args = 0..=1, default_missing_value = "8765")]
     pub(crate) foxglove: Option<u16>,
+    #[command(flatten)]
+    losses: LossArgs,
     /// Print the robots' commands and wait for them to be started by hand
     #[arg(long)]
     by_hand: bool,
@@ -133,6 +138,7 @@ fn options(args: &Args, scenario: &Scenario, folder: &RunFolder) -> Result<Optio
     let mut options = Options::new(folder.path(), scenario).map_err(Failure::broken)?;
     options.horizons = args.horizon.clone();
     options.real_time = args.real_time;
+    args.losses.apply(&mut options)?;
     if let Some(exchange) = args.team.exchange() {
         options.exchange = exchange;
     }
@@ -164,6 +170,7 @@ fn about(args: &Args, scenario: &Scenario, exchange: Kind) -> About {
             Kind::Relay => "relay".into(),
         },
         real_time: args.real_time,
+        chaos: args.losses.chaos(),
         command: std::iter::once("./run.sh".to_string()).chain(std::env::args().skip(1)).collect(),
         versions: Versions::here(),
         machine: Machine::here(),

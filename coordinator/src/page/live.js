@@ -17,6 +17,7 @@ function cards(frame) {
     ["fallbacks", frame.fallbacks],
     ["horizons", horizons],
   ];
+  for (const absent of frame.absent) entries.push(["absent", absent, "wide"]);
   if (frame.policy !== null) entries.push(["policy", frame.policy, "wide"]);
   find("cards").replaceChildren(...entries.map(([name, value, wide]) => {
     const card = document.createElement("div"), term = document.createElement("dt"), text = document.createElement("dd");

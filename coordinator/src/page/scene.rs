@@ -65,6 +65,7 @@ pub fn frame(frame: &Frame) -> Value {
     json!({
         "tick": frame.tick, "tickMs": frame.duration.as_secs_f64() * 1e3, "arrived": frame.arrived,
         "minSeparation": separation, "fallbacks": frame.fallbacks, "robots": robots,
+        "absent": frame.absent,
         "policy": frame.acting.map(|acting| acting.to_string()),
     })
 }

@@ -7,6 +7,7 @@ use super::found::FoundPolicy;
 use super::server::{ServerError, ServerProcess, server_program};
 use crate::own_runtime_dir::OwnRuntimeDir;
 use policy::settings::{PolicySettings, SettingsError};
+use shared::chaos::Chaos;
 use shared::exchange::Kind;
 use shared::messages::{MAX_ROBOTS, Observation, PolicyAnswer, answer};
 use shared::os;
@@ -290,6 +291,7 @@ fn tell(
         episodes: Episodes::default(),
         start_patience: PATIENCE.as_secs_f64(),
         silence_limit: PATIENCE.as_secs_f64(),
+        chaos: Chaos::default(),
         place: place.clone(),
     };
     team.write(run)?;

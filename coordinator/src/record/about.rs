@@ -26,6 +26,9 @@ pub struct About {
     pub exchange: String,
     /// Whether ticks lasted one sample time each.
     pub real_time: bool,
+    /// Faults on purpose, as `--chaos` said.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub chaos: Option<String>,
     /// The command line.
     pub command: Vec<String>,
     /// What ran.

@@ -7,6 +7,7 @@
 //! | `trajectory.csv`, `horizons.csv` | what every robot did, its horizons | tick by tick |
 //! | `run.mcap` | the same as a film, with predicted paths | tick by tick |
 //! | `latency.csv` | how long ticks and plans took | tick by tick |
+//! | `membership.csv` | who did not take part, when and why | when it happens |
 //! | `summary.json` | how it went | at the end |
 //!
 //! A run that is cut leaves everything up to its last tick and no `summary.json`.
@@ -17,6 +18,7 @@ mod foxglove;
 pub mod horizons;
 pub mod latency;
 pub mod mcap;
+pub mod membership;
 #[doc(hidden)]
 pub mod samples;
 mod scene;
@@ -139,6 +141,7 @@ mod tests {
             seed: 5,
             exchange: "none".into(),
             real_time: false,
+            chaos: None,
             command: vec!["coordinator".into()],
             versions: about::Versions::here(),
             machine: about::Machine::here(),

@@ -20,6 +20,8 @@ pub struct Frame {
     pub min_separation: f64,
     /// Fallbacks so far, over all robots.
     pub fallbacks: u64,
+    /// Who does not take part, since when and why, a sentence each.
+    pub absent: Vec<String>,
     /// Who chose the horizons, in a run with a policy.
     pub acting: Option<Acting>,
 }
@@ -111,6 +113,7 @@ pub(super) mod tests {
             arrived: 1,
             min_separation: 1.75,
             fallbacks: 3,
+            absent: vec!["robot-1 lost at tick 3: it was ended by signal 9".into()],
             acting: Some(Acting { source: Source::Policy, version: 2, sha256: [0xab; 32] }),
         }
     }

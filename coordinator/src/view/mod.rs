@@ -13,6 +13,7 @@ mod viewers;
 use crate::horizons::RunHorizons;
 use crate::record::RecordError;
 use crate::run::RunTick;
+use crate::summary::Absence;
 use crate::team::ProcessTeam;
 use crate::tick_parts::TickTimes;
 use browser::BrowserView;
@@ -76,6 +77,7 @@ pub struct Views {
     browser: Option<BrowserView>,
     foxglove: Option<FoxgloveView>,
     explainer: Explainer,
+    scenario: Scenario,
     fallbacks: u64,
     next: Instant,
     last: Option<Frame>,
@@ -104,6 +106,7 @@ impl Views {
             browser,
             foxglove,
             explainer: Explainer::new(Arc::new(params.clone()), Arc::new(Layout::of(scenario, &params.model))),
+            scenario: scenario.clone(),
             fallbacks: 0,
             next: Instant::now(),
             last: None,
@@ -119,7 +122,7 @@ impl Views {
         let fell_back = |step: &&Step| matches!(step.status, Status::Shifted | Status::Stopped);
         self.fallbacks += steps.iter().filter(fell_back).count() as u64;
         self.explainer.observe(tick, steps);
-        if Instant::now() >= self.next || metrics.arrived_all() {
+        if Instant::now() >= self.next || metrics.settled() {
             self.next = Instant::now() + FRAME_TIME;
             let frame = Frame {
                 tick,
@@ -128,6 +131,7 @@ impl Views {
                 arrived: metrics.arrived(),
                 min_separation: metrics.min_separation(),
                 fallbacks: self.fallbacks,
+                absent: absent(seen, &self.scenario),
                 acting: seen.horizons.acting(),
             };
             self.last = self.slot.offer(frame);
@@ -151,6 +155,12 @@ impl Views {
             foxglove.close();
         }
     }
+}
+
+/// Who does not take part now.
+fn absent(seen: &RunTick<'_>, scenario: &Scenario) -> Vec<String> {
+    let all = Absence::all(seen.team.members().changes(), scenario);
+    all.iter().filter(|absence| absence.until.is_none()).map(Absence::to_string).collect()
 }
 
 impl Observer<ProcessTeam, RunHorizons> for Views {

@@ -124,6 +124,7 @@ fn heading<'a>(frame: &Frame, shown: &Shown) -> Text<'a> {
         Line::from(format!("tick {tick} of {max_ticks}  arrived {arrived}/{robots}  tick time {milliseconds:.2} ms")),
         Line::from(format!("min separation {nearest}  fallbacks {fallbacks}")),
     ];
+    lines.extend(frame.absent.iter().take(3).map(|absent| Line::from(absent.clone()).bold()));
     lines.extend(frame.acting.map(|acting| Line::from(format!("policy {acting}"))));
     Text::from(lines)
 }
@@ -138,7 +139,7 @@ mod tests {
     #[test]
     fn a_frame_shows_the_team_as_text() {
         let shown = Shown::new(&samples::scenario(2), &Params::safe(), "fixed:3");
-        let mut terminal = Terminal::new(TestBackend::new(68, 7)).unwrap();
+        let mut terminal = Terminal::new(TestBackend::new(68, 8)).unwrap();
         terminal.draw(|area| draw(area, &sample(4), &shown)).unwrap();
         let cells: Vec<&str> = terminal.backend().buffer().content.iter().map(|cell| cell.symbol()).collect();
         let lines: Vec<String> = cells.chunks(68).map(|line| line.concat().trim_end().to_string()).collect();
@@ -148,6 +149,7 @@ mod tests {
                 "sample  horizons fixed:3",
                 "tick 5 of 100  arrived 1/2  tick time 0.42 ms",
                 "min separation 1.750 m (r_min 1.5 m)  fallbacks 3",
+                "robot-1 lost at tick 3: it was ended by signal 9",
                 "policy v000002 (sha256 abababababab)",
                 "robot  distance m  horizon  rows  QP us      level        status",
                 "0      3.51        3        0     0.4        closed_form  solved",

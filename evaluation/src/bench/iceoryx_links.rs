@@ -2,14 +2,14 @@
 
 use super::BenchError;
 use super::links::{Link, Message, PATIENCE, spin_until};
-use shared::messages::{Announcement, MAX_ROBOTS, Observation, Plan, PolicyAnswer, Report, kind, order};
+use shared::messages::{Announcement, Author, MAX_ROBOTS, Observation, Plan, PolicyAnswer, Report, kind, order};
 use shared::services::{
     Announcements, Announcer, PolicyAsker, PolicyPort, Receiver, Reporter, Reports, Sender, Services,
 };
 use std::time::Instant;
 
 /// A message in a plan, and back.
-fn plan_of(message: Message, me: u32) -> Plan {
+fn plan_of(message: Message, me: u16) -> Plan {
     Plan { stamp: message.stamp, tick: message.one_way, epoch: message.last, robot: me, ..Plan::EMPTY }
 }
 
@@ -20,13 +20,13 @@ fn message_of(plan: &Plan) -> Message {
 /// Both ends look without pause.
 pub(super) struct Busy {
     ports: (Sender<Plan>, Receiver<Plan>),
-    me: u32,
+    me: u16,
     _services: Services,
 }
 
 impl Busy {
     /// The end number `me`; the services live as long as their ports.
-    pub(super) fn new(ports: (Sender<Plan>, Receiver<Plan>), me: u32, services: Services) -> Self {
+    pub(super) fn new(ports: (Sender<Plan>, Receiver<Plan>), me: u16, services: Services) -> Self {
         Self { ports, me, _services: services }
     }
 }
@@ -100,7 +100,7 @@ impl Link for TeamSecond {
     fn send(&mut self, message: Message) -> Result<(), BenchError> {
         Ok(self.to.report(Report {
             plan: plan_of(message, 1),
-            ..Report::presence(0, 1, kind::STEP, vodca::Position::zeros())
+            ..Report::presence(Author { robot: 1, ..Author::default() }, kind::STEP, vodca::Position::zeros())
         })?)
     }
 

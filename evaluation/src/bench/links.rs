@@ -113,7 +113,7 @@ pub(super) fn link(kind: LinkKind, place: &RuntimeDir, end: End) -> Result<(Box<
         LinkKind::IceoryxBusy => {
             let services = services(place, end)?;
             let ports = services.plans()?.ok_or(BenchError::Silent { who: "the service of plans" })?;
-            Box::new(Busy::new(ports, me as u32, services))
+            Box::new(Busy::new(ports, me as u16, services))
         }
         LinkKind::IceoryxEvent => match end {
             End::First => Box::new(EventFirst(PolicyAsker::create(place)?)),

@@ -20,6 +20,10 @@ impl Drive for Still {
         self.position
     }
 
+    fn restart(&mut self, _: u64, at: Position) {
+        self.position = at;
+    }
+
     fn step(&mut self, _: u64, horizon: Horizon, _: &NeighbourEstimates) -> Step {
         Step {
             position: self.position,

@@ -31,6 +31,8 @@ function cardsOf(run) {
     ["tick p50", `${(s.tick_latency.p50_us / 1e3).toFixed(2)} ms`],
     ["longest tick", `${(s.tick_latency.max_us / 1e3).toFixed(2)} ms`],
     ["guarantee", s.guarantee, "", "wide"],
+    ...(s.absences || []).map(({ name, state, tick, why, until }) => [
+      "absent", `${name} ${state} at tick ${tick}: it ${why}${until == null ? "" : `; back at tick ${until}`}`, "bad", "wide"]),
     ...policyCards(s.policy),
   ];
 }

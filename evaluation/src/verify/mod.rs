@@ -160,6 +160,7 @@ fn check(trajectory: &str, horizons: &str, scenario: &Scenario, params: &Params,
         starts(&table, scenario),
         bounds(&table, scenario, params),
         motion(&table, params),
+        absent(&table),
         chosen_horizons(&table, horizons, cut),
         guarantee(&course, scenario, params),
     ];
@@ -208,6 +209,18 @@ fn motion(table: &Table, params: &Params) -> Option<Finding> {
         let allowed = format!("[{model_x}, {model_y}] m by the model from tick {k}");
         (x != model_x || y != model_y)
             .then(|| Finding::new(RuntimeDir::at(k + 1, i), "position", &format!("[{x}, {y}] m"), &allowed))
+    })
+}
+
+/// Who does not take part in a tick stands in it.
+fn absent(table: &Table) -> Option<Finding> {
+    first(table, |k, i, row| {
+        let moves = !row.took_part() && (row.ux != 0.0 || row.uy != 0.0 || row.level != "fallback" || row.rows != 0);
+        let value = format!("[{}, {}] m/s, {}, {} rows", row.ux, row.uy, row.level, row.rows);
+        moves.then(|| {
+            let what = format!("what a robot did that was {}", row.status);
+            Finding::new(RuntimeDir::at(k, i), &what, &value, "[0, 0] m/s, fallback, 0 rows")
+        })
     })
 }
 
@@ -274,7 +287,8 @@ fn claims(table: &Table, course: &PredictedMotion, params: &Params, summary: &Va
     };
     let arrived = course.distances.iter().all(|&left| left < params.episode.arrival_tolerance);
     let kept = !promised(params) || course.loss.is_none();
-    let success = arrived && course.pairs_collided == 0 && kept;
+    let lost = table.ticks.last().is_some_and(|rows| rows.iter().any(|row| row.status == "lost"));
+    let success = arrived && course.pairs_collided == 0 && kept && !lost;
     compare("success", &summary["success"], success.into());
     compare("ticks", &summary["ticks"], table.ticks.len().into());
     compare("path_cost", &summary["path_cost"], course.path.iter().sum::<f64>().into());

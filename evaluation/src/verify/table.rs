@@ -16,6 +16,13 @@ pub(super) struct Row {
     pub(super) status: String,
 }
 
+impl Row {
+    /// Whether the robot took part in the tick.
+    pub(super) fn took_part(&self) -> bool {
+        !matches!(self.status.as_str(), "late" | "lost")
+    }
+}
+
 /// The whole file: `ticks[k][i]` and the last positions.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Table {
@@ -25,7 +32,7 @@ pub(super) struct Table {
 
 const COLUMNS: [&str; 10] = ["tick", "robot", "x", "y", "ux", "uy", "horizon", "rows", "level", "status"];
 const LEVELS: [&str; 5] = ["closed_form", "structured", "clarabel", "fallback", "baseline"];
-const STATUSES: [&str; 5] = ["solved", "relaxed", "held", "shifted", "stopped"];
+const STATUSES: [&str; 7] = ["solved", "relaxed", "held", "shifted", "stopped", "late", "lost"];
 
 /// Reads `text` for a team of `robots`; the first thing that is off ends the reading, because every
 /// row after it would be off too.

@@ -1,12 +1,14 @@
 //! The coordinator's side of the exchange.
 
 use super::Kind;
-use crate::messages::{Announcement, Plan, Report, kind, order};
+use crate::messages::{Announcement, MAX_ROBOTS, Plan, Report, kind, order};
 use crate::os;
 use crate::runtime_dir::RuntimeDir;
 use crate::services::{Announcer, Reports, ServiceError, Services};
 use std::time::Duration;
+use vodca::Position;
 use vodca::horizon::Horizon;
+use vodca::membership::Member;
 
 /// Announces ticks and collects reports.
 #[derive(Debug)]
@@ -17,8 +19,8 @@ pub struct CoordinatorPort {
     epoch: u64,
     /// The newest plan of every robot, by robot number.
     plans: Vec<Plan>,
-    /// Keeps the services alive until the last robot has opened them.
-    _services: Services,
+    /// Robots open them at any time: those that come back, too.
+    services: Services,
 }
 
 impl CoordinatorPort {
@@ -32,21 +34,36 @@ impl CoordinatorPort {
             kind,
             epoch,
             plans: vec![Plan::EMPTY; robots],
-            _services: services,
+            services,
         })
     }
 
     /// Announces tick `tick` to every robot, in a relayed exchange with all plans of `tick - 1`.
-    /// `horizons`: N_i^k by robot. Gives the stamp of the announcement, ns.
-    pub fn announce(&mut self, tick: u64, horizons: &[Horizon]) -> Result<u64, ServiceError> {
+    /// `horizons`: N_i^k by robot; `members` say who takes part, `bodies` where everybody's body is, m. Gives the stamp of
+    /// the announcement, ns.
+    pub fn announce(
+        &mut self,
+        tick: u64,
+        horizons: &[Horizon],
+        members: &[Member],
+        bodies: &[Position],
+    ) -> Result<u64, ServiceError> {
         let mut announcement = Announcement { epoch: self.epoch, tick, order: order::TICK, ..Default::default() };
+        for (robot, member) in members.iter().enumerate().take(MAX_ROBOTS) {
+            announcement.lives[robot] = member.life;
+            announcement.states[robot] = member.state.number();
+            if member.state.has_stood() {
+                announcement.absent += 1;
+                announcement.bodies[robot] = bodies[robot].into();
+            }
+        }
         for (to, horizon) in announcement.horizons.iter_mut().zip(horizons) {
             *to = horizon.steps() as u8;
         }
         let plans: &[Plan] = if self.kind == Kind::Relay && tick > 0 { &self.plans } else { &[] };
-        announcement.plans = plans.len() as u32;
+        announcement.plans = plans.len() as u16;
         self.reports.look();
-        self.reports.expect(self.plans.len());
+        self.reports.expect(members.iter().filter(|member| member.state.takes_part()).count());
         announcement.stamp = os::now_ns();
         self.announcer.announce(&announcement, plans)?;
         Ok(announcement.stamp)
@@ -88,6 +105,11 @@ impl CoordinatorPort {
             take(robot, &report);
         }
         Ok(())
+    }
+
+    /// Frees what dead processes held.
+    pub fn clean_up_after_dead(&self) {
+        self.services.clean_up_after_dead();
     }
 
     /// Waits until `reports` more have come since the last [`Self::collect`], a signal came, or `limit` has

@@ -20,7 +20,9 @@ use crate::runtime_dir::RuntimeDir;
 use crate::services::{ServiceError, Services};
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
+use vodca::Position;
 use vodca::horizon::Horizon;
+use vodca::membership::State;
 use vodca::prediction::Prediction;
 
 /// The form of the exchange.
@@ -61,16 +63,52 @@ pub enum Order {
         /// Its epoch.
         epoch: u64,
     },
+    /// Nobody waits for this robot in the tick that begins, for it has missed one: say that it is there.
+    Speak,
+    /// The run goes on without this process: it has not been admitted yet.
+    NotYet {
+        /// Another process drives the robot.
+        taken: bool,
+    },
+    /// Another process drives this robot, or it was given up: end.
+    Superseded,
     /// End normally.
     Stop,
 }
 
-/// What is told whose plan of which tick was heard.
-pub type Hear<'a> = dyn FnMut(usize, u64, &Prediction) + 'a;
+/// What is told before an [`Order::Tick`] is given.
+#[derive(Clone, Copy, Debug)]
+pub enum News<'a> {
+    /// The plan that robot `sender` computed at `tick`.
+    Plan {
+        /// Whose.
+        sender: usize,
+        /// k - 1.
+        tick: u64,
+        /// What it plans.
+        plan: &'a Prediction,
+    },
+    /// Robot `robot` stood during the tick before, whatever was heard of it. This comes after all plans, and of this
+    /// robot itself, too: it begins anew then.
+    Absent {
+        /// Which robot.
+        robot: usize,
+        /// How it takes part now.
+        state: State,
+        /// Where it stands, m.
+        at: Position,
+    },
+}
+
+/// What is told the news.
+pub type Hear<'a> = dyn FnMut(News<'_>) + 'a;
 
 /// A robot's side of the exchange.
 pub trait Exchange {
-    /// Waits up to `limit` for the next order and hands every plan of the tick before to `hear`.
+    /// Which life this process is ([`crate::messages::Author::life`]).
+    fn life(&self) -> u32;
+
+    /// Waits up to `limit` for the next order and hands the news of the tick before to `hear`.
     /// `None`: nothing was announced (a signal ends the wait early).
     fn next_order(&mut self, limit: Duration, hear: &mut Hear<'_>) -> Result<Option<Order>, ServiceError>;
 
@@ -89,7 +127,9 @@ pub fn open(
     epoch: u64,
 ) -> Result<Box<dyn Exchange>, ServiceError> {
     let services = Services::open(place, robots, kind == Kind::Peer)?;
-    let clock = Clock { announcements: services.announcements()?, robot, epoch, next_tick: 0 };
+    let life = services.next_life(robot);
+    let clock =
+        Clock { announcements: services.announcements()?, robot, epoch, life, next_tick: 0, absent: Vec::new() };
     let reporter = services.reporter()?;
     Ok(match services.plans()? {
         Some((sender, receiver)) => Box::new(peer::Peer::new(clock, reporter, sender, receiver, robots)),
@@ -102,10 +142,20 @@ struct Clock {
     announcements: crate::services::Announcements,
     robot: usize,
     epoch: u64,
+    life: u32,
     next_tick: u64,
+    /// Who stood during the tick before the announced one.
+    absent: Vec<(usize, State, Position)>,
 }
 
 impl Clock {
+    /// Tells `hear` who stood.
+    fn tell_absent(&self, hear: &mut Hear<'_>) {
+        for &(robot, state, at) in &self.absent {
+            hear(News::Absent { robot, state, at });
+        }
+    }
+
     /// Waits up to `limit` for the next announcement that counts and lets `frame` see its plans.
     fn next(
         &mut self,
@@ -114,15 +164,29 @@ impl Clock {
     ) -> Result<Option<Order>, ServiceError> {
         let mut waited = false;
         loop {
-            let (robot, epoch, next_tick) = (self.robot, self.epoch, self.next_tick);
+            let (robot, epoch, life, next_tick) = (self.robot, self.epoch, self.life, self.next_tick);
+            let absent = &mut self.absent;
             let received = self.announcements.receive(|announcement, plans| {
                 if announcement.epoch < epoch {
                     return None;
                 }
+                let counts = announcement.lives[robot];
                 let woken = os::now_ns();
                 match announcement.order {
+                    order::TICK if counts < life => {
+                        let taken = announcement.states[robot] != State::Lost.number();
+                        Some(Order::NotYet { taken })
+                    }
+                    order::TICK if counts > life => Some(Order::Superseded),
                     order::TICK if announcement.tick >= next_tick => {
+                        match State::from_number(announcement.states[robot]) {
+                            Some(State::Late) => return Some(Order::Speak),
+                            Some(State::Lost) => return Some(Order::Superseded),
+                            _ => {}
+                        }
                         frame(announcement, plans);
+                        absent.clear();
+                        absent.extend(announcement.absent());
                         let horizon = announcement.horizons.get(robot).copied().unwrap_or(0);
                         Some(Order::Tick {
                             tick: announcement.tick,
@@ -142,7 +206,7 @@ impl Clock {
                     match order {
                         Order::Tick { tick, .. } => self.next_tick = tick + 1,
                         Order::Episode { epoch } => (self.epoch, self.next_tick) = (epoch, 0),
-                        Order::Meet | Order::Stop => {}
+                        _ => {}
                     }
                     return Ok(Some(order));
                 }

@@ -1,7 +1,7 @@
 //! Plans from robot to robot.
 
-use super::{Clock, Exchange, Hear, Order};
-use crate::messages::{Plan, Report, kind};
+use super::{Clock, Exchange, Hear, News, Order};
+use crate::messages::{MAX_ROBOTS, Plan, Report, kind};
 use crate::os;
 use crate::services::{Receiver, Reporter, Sender, ServiceError};
 use std::time::Duration;
@@ -14,6 +14,8 @@ pub(super) struct Peer {
     /// Plans of the tick that is being planned, by robot: a quicker neighbour's plan is read together
     /// with the plans of the tick before and must not be heard until the next tick.
     early: Vec<Option<Plan>>,
+    /// Which life of every robot counts.
+    lives: [u32; MAX_ROBOTS],
 }
 
 impl Peer {
@@ -24,13 +26,18 @@ impl Peer {
         receiver: Receiver<Plan>,
         robots: usize,
     ) -> Self {
-        Self { clock, reporter, sender, receiver, early: vec![None; robots] }
+        Self { clock, reporter, sender, receiver, early: vec![None; robots], lives: [0; MAX_ROBOTS] }
     }
 }
 
 impl Exchange for Peer {
+    fn life(&self) -> u32 {
+        self.clock.life
+    }
+
     fn next_order(&mut self, limit: Duration, hear: &mut Hear<'_>) -> Result<Option<Order>, ServiceError> {
-        let order = self.clock.next(limit, |_, _| {})?;
+        let Self { clock, lives, .. } = self;
+        let order = clock.next(limit, |announcement, _| *lives = announcement.lives)?;
         if order == Some(Order::Meet) {
             // Connections cost most of the start of a large team; the first tick shall not pay for them.
             self.sender.connect()?;
@@ -41,8 +48,10 @@ impl Exchange for Peer {
         }
         let Some(Order::Tick { tick, .. }) = order else { return Ok(order) };
         let mut tell = |plan: &Plan| {
-            if let Some(prediction) = plan.prediction() {
-                hear(plan.robot as usize, plan.tick, &prediction);
+            let sender = usize::from(plan.robot);
+            let counts = self.lives.get(sender) == Some(&plan.life);
+            if let Some(prediction) = counts.then(|| plan.prediction()).flatten() {
+                hear(News::Plan { sender, tick: plan.tick, plan: &prediction });
             }
         };
         for early in &mut self.early {
@@ -53,7 +62,7 @@ impl Exchange for Peer {
             }
         }
         while let Some(plan) = self.receiver.receive()? {
-            let robot = plan.robot as usize;
+            let robot = usize::from(plan.robot);
             if plan.epoch != self.clock.epoch || robot == self.clock.robot || robot >= self.early.len() {
                 continue;
             }
@@ -63,6 +72,7 @@ impl Exchange for Peer {
                 self.early[robot] = Some(*plan);
             }
         }
+        self.clock.tell_absent(hear);
         Ok(order)
     }
 

@@ -1,6 +1,6 @@
 //! Plans through the coordinator: sent inside the report, received in one frame.
 
-use super::{Clock, Exchange, Hear, Order};
+use super::{Clock, Exchange, Hear, News, Order};
 use crate::messages::Report;
 use crate::os;
 use crate::services::{Reporter, ServiceError};
@@ -18,16 +18,26 @@ impl Relay {
 }
 
 impl Exchange for Relay {
+    fn life(&self) -> u32 {
+        self.clock.life
+    }
+
     fn next_order(&mut self, limit: Duration, hear: &mut Hear<'_>) -> Result<Option<Order>, ServiceError> {
         let (robot, epoch) = (self.clock.robot, self.clock.epoch);
-        self.clock.next(limit, |announcement, plans| {
+        let order = self.clock.next(limit, |announcement, plans| {
             for plan in plans {
-                let wanted = plan.epoch == epoch && plan.tick + 1 == announcement.tick && plan.robot as usize != robot;
+                let sender = usize::from(plan.robot);
+                let counts = announcement.lives.get(sender) == Some(&plan.life);
+                let wanted = plan.epoch == epoch && plan.tick + 1 == announcement.tick && sender != robot && counts;
                 if let Some(prediction) = wanted.then(|| plan.prediction()).flatten() {
-                    hear(plan.robot as usize, plan.tick, &prediction);
+                    hear(News::Plan { sender, tick: plan.tick, plan: &prediction });
                 }
             }
-        })
+        })?;
+        if let Some(Order::Tick { .. }) = order {
+            self.clock.tell_absent(hear);
+        }
+        Ok(order)
     }
 
     fn publish(&mut self, mut report: Report) -> Result<(), ServiceError> {

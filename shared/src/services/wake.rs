@@ -22,6 +22,7 @@ const REPORTS: usize = 1;
 /// The number of reports at which the coordinator wants to be woken.
 const WANTED: usize = 2;
 const WORDS: usize = 3;
+// Numbers behind the counters: how many processes each robot has had.
 /// All who wait.
 const EVERYBODY: u32 = i32::MAX as u32;
 
@@ -31,17 +32,22 @@ pub(super) struct WakePage(SharedPage);
 
 impl WakePage {
     /// Makes or opens it; it is deleted with all files of `place`.
-    pub(super) fn new(place: &RuntimeDir, role: Role) -> Result<Self, ServiceError> {
+    pub(super) fn new(place: &RuntimeDir, robots: usize, role: Role) -> Result<Self, ServiceError> {
         let path = PathBuf::from(format!("/dev/shm/{}wake", place.prefix));
         let page = match role {
-            Role::Create => SharedPage::create(&path, WORDS, 0),
-            Role::Open => SharedPage::open(&path, WORDS, 0),
+            Role::Create => SharedPage::create(&path, WORDS, robots),
+            Role::Open => SharedPage::open(&path, WORDS, robots),
         };
         page.map(Self).map_err(|error| ServiceError {
             what: format!("use the page of wake-ups {}", path.display()),
             reason: error.to_string(),
             place: place.to_string(),
         })
+    }
+
+    /// A life for a new process of `robot`, from 1: no two processes get the same.
+    pub(super) fn next_life(&self, robot: usize) -> u32 {
+        self.0.numbers().get(robot).map_or(0, |lives| lives.fetch_add(1, SeqCst) as u32 + 1)
     }
 }
 
@@ -157,8 +163,8 @@ mod tests {
 
     fn page() -> (RuntimeDir, Arc<WakePage>, Arc<WakePage>) {
         let place = RuntimeDir::create().unwrap();
-        let ours = Arc::new(WakePage::new(&place, Role::Create).unwrap());
-        let theirs = Arc::new(WakePage::new(&place, Role::Open).unwrap());
+        let ours = Arc::new(WakePage::new(&place, 2, Role::Create).unwrap());
+        let theirs = Arc::new(WakePage::new(&place, 2, Role::Open).unwrap());
         (place, ours, theirs)
     }
 
@@ -198,6 +204,13 @@ mod tests {
                 assert_eq!(ours.0.word(REPORTS).load(SeqCst), 3 * (round + 1));
             });
         }
+        place.remove();
+    }
+
+    #[test]
+    fn no_two_processes_of_a_robot_have_the_same_life() {
+        let (place, ours, theirs) = page();
+        assert_eq!([ours.next_life(1), theirs.next_life(1), ours.next_life(0), ours.next_life(1)], [1, 2, 1, 3]);
         place.remove();
     }
 

@@ -39,6 +39,10 @@ impl Drive for Straight {
         self.position
     }
 
+    fn restart(&mut self, _: u64, at: Position) {
+        self.position = at;
+    }
+
     fn step(&mut self, tick: u64, horizon: Horizon, _: &NeighbourEstimates) -> Step {
         if let Some((kind, at)) = &self.fault
             && *at == tick

@@ -3,7 +3,8 @@
 use tests::{ENDLESS, Robots, Run};
 
 fn lost(fault: &'static str, exchange: &str) -> String {
-    let finished = Run::start(Robots::Faulty(fault), &format!("14 {ENDLESS} --exchange {exchange}")).finish();
+    let finished =
+        Run::start(Robots::Faulty(fault), &format!("14 {ENDLESS} --on-loss stop --exchange {exchange}")).finish();
     assert_eq!(finished.status.code(), Some(3), "{finished:?}");
     assert_eq!(finished.summary["success"], false, "{finished:?}");
     finished.stderr
@@ -31,7 +32,7 @@ fn a_robot_that_ends_before_it_is_ready_is_reported() {
 
 #[test]
 fn a_robot_killed_from_outside_is_reported_by_signal() {
-    let mut run = Run::start(Robots::Real, &format!("14 {ENDLESS}"));
+    let mut run = Run::start(Robots::Real, &format!("14 {ENDLESS} --on-loss stop"));
     run.wait_until_driving();
     let robot = *run.robots().first().expect("robots drive");
     tests::signal(robot, "KILL");

@@ -3,7 +3,8 @@
 use tests::{ENDLESS, Robots, Run};
 
 fn lost(fault: &'static str, exchange: &str) -> String {
-    let finished = Run::start(Robots::Faulty(fault), &format!("14 {ENDLESS} --exchange {exchange}")).finish();
+    let finished =
+        Run::start(Robots::Faulty(fault), &format!("14 {ENDLESS} --on-loss stop --exchange {exchange}")).finish();
     assert_eq!(finished.status.code(), Some(3), "{finished:?}");
     finished.stderr
 }
@@ -28,7 +29,7 @@ fn a_robot_that_never_gets_ready_is_lost() {
 
 #[test]
 fn robots_give_up_when_the_coordinator_hangs() {
-    let mut run = Run::start(Robots::Real, &format!("2 {ENDLESS}"));
+    let mut run = Run::start(Robots::Real, &format!("2 {ENDLESS} --on-loss stop"));
     run.wait_until_driving();
     run.signal("STOP");
     let ended = |pid: &u32| shared::os::start_time(*pid).is_none();

@@ -85,7 +85,7 @@ impl OrcaController {
         let fixed = self.planes.len();
         self.seen.clear();
         for (other, neighbour) in view.neighbours.iter().enumerate().filter(|(other, _)| *other != self.robot) {
-            let Some((_, present)) = neighbour.present else { continue };
+            let Some((_, present)) = neighbour.present.filter(|_| !neighbour.lost) else { continue };
             let distance = (present - view.position).norm();
             if distance < orca.neighbour_distance {
                 self.seen.push((distance, other));
@@ -139,6 +139,14 @@ fn half_plane(disc: &Disc, velocity: Input, time_horizon: f64, sample_time: f64)
 }
 
 impl Controller for OrcaController {
+    fn restart(&mut self) {
+        self.velocity = Input::zeros();
+    }
+
+    fn lay_out(&mut self, layout: &Arc<Layout>) {
+        self.layout = layout.clone();
+    }
+
     fn tick(&mut self, view: &View<'_>) -> Decision {
         let fixed = self.look_around(view);
         let wanted = self.preferred_velocity(view.position, view.tick);

@@ -17,6 +17,8 @@ pub struct RunMetrics {
     sample_time: f64,
     arrival_tolerance: f64,
     limit: f64,
+    /// What two usual discs keep, m.
+    owed: f64,
     collision_distance: f64,
     obstacles: Obstacles,
     robots: Vec<Tally>,
@@ -44,6 +46,8 @@ struct Tally {
     travel: f64,
     path_length: f64,
     arrived_since: Option<u64>,
+    /// Its process has ended and nobody drives it.
+    lost: bool,
     least: f64,
     activations: u64,
     ticks_with_rows: u64,
@@ -71,6 +75,7 @@ impl RunMetrics {
                     travel: 0.0,
                     path_length: 0.0,
                     arrived_since: (straight_line < tolerance).then_some(0),
+                    lost: false,
                     least: f64::INFINITY,
                     activations: 0,
                     ticks_with_rows: 0,
@@ -85,6 +90,7 @@ impl RunMetrics {
             sample_time: params.model.sample_time,
             arrival_tolerance: tolerance,
             limit: min_separation - SEPARATION_TOLERANCE,
+            owed: min_separation,
             collision_distance: params.episode.collision_factor * min_separation,
             moves: scenario.robots.iter().map(|robot| (robot.start, robot.start)).collect(),
             pairs: vec![0; robots.len() * (robots.len() + obstacles.count())],
@@ -113,6 +119,7 @@ impl RunMetrics {
             } else {
                 robot.arrived_since = None;
             }
+            robot.lost = step.status == Status::Lost;
             robot.activations += u64::from(step.rows);
             robot.ticks_with_rows += u64::from(step.rows > 0);
             robot.fallback_steps += u64::from(matches!(step.status, Status::Shifted | Status::Stopped));
@@ -174,7 +181,35 @@ impl RunMetrics {
         least
     }
 
-    /// Whether every robot is within the arrival tolerance now: the run ends here.
+    /// Whether nobody is under way any more: everybody has arrived but lost robots, and those whose set-point a lost
+    /// one closes ([`Self::shut_off`]). A run ends here.
+    pub fn settled(&self) -> bool {
+        (0..self.robots.len()).all(|robot| {
+            let Tally { arrived_since, lost, .. } = self.robots[robot];
+            lost || arrived_since.is_some() || self.is_shut_off(robot)
+        })
+    }
+
+    /// Robots that drive and cannot arrive, because a lost one stands where they want to be.
+    pub fn shut_off(&self) -> usize {
+        (0..self.robots.len()).filter(|&robot| self.is_shut_off(robot)).count()
+    }
+
+    fn is_shut_off(&self, robot: usize) -> bool {
+        let own = &self.robots[robot];
+        !own.lost
+            && self.robots.iter().zip(&self.moves).any(|(other, &(_, at))| {
+                let owed = self.owed + own.extra + other.extra;
+                other.lost && (own.set_point - at).norm() < owed - self.arrival_tolerance
+            })
+    }
+
+    /// Robots that are lost now.
+    pub fn lost(&self) -> usize {
+        self.robots.iter().filter(|robot| robot.lost).count()
+    }
+
+    /// Whether every robot is within the arrival tolerance now.
     pub fn arrived_all(&self) -> bool {
         self.arrived() == self.robots.len()
     }
@@ -225,7 +260,7 @@ impl RunMetrics {
         let straight_line: f64 = robots.iter().map(|robot| robot.straight_line).sum();
         let collisions = pairs_with(COLLIDED);
         RunSummary {
-            success: self.arrived_all() && collisions == 0,
+            success: self.arrived_all() && collisions == 0 && self.lost() == 0,
             ticks: self.ticks,
             completion_time: self.arrived_all().then_some(self.ticks as f64 * self.sample_time),
             path_cost,
@@ -238,6 +273,7 @@ impl RunMetrics {
             ticks_collided: self.ticks_collided,
             robots_collided: total(|robot| u64::from(robot.collided)),
             activations: total(|robot| robot.activations),
+            shut_off: self.shut_off() as u64,
             ticks_with_rows: total(|robot| robot.ticks_with_rows),
             infeasible: total(|robot| robot.infeasible),
             solver_levels: self.levels,

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 /// The figures of one run. Numbers are finite; `None` (null in JSON) where there is nothing to state.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RunSummary {
-    /// All robots within the arrival tolerance at the end, and nobody collided.
+    /// All robots within the arrival tolerance at the end, nobody collided, and nobody lost.
     pub success: bool,
     /// Ticks run.
     pub ticks: u64,
@@ -33,6 +33,9 @@ pub struct RunSummary {
     pub robots_collided: u64,
     /// Collision rows summed over robots and ticks.
     pub activations: u64,
+    /// Robots that could not arrive, because a lost one stands where they wanted to be.
+    #[serde(default)]
+    pub shut_off: u64,
     /// (Robot, tick) pairs with at least one row.
     pub ticks_with_rows: u64,
     /// (Robot, tick) pairs whose hard rows were infeasible (relaxed or held).
@@ -117,6 +120,12 @@ pub struct Statuses {
     pub shifted: u64,
     /// Stood still: no plan at all.
     pub stopped: u64,
+    /// Stood still: nothing of the robot counted in time.
+    #[serde(default)]
+    pub late: u64,
+    /// Stood still: its process has ended.
+    #[serde(default)]
+    pub lost: u64,
 }
 
 impl Statuses {
@@ -127,6 +136,8 @@ impl Statuses {
             Status::Held => &mut self.held,
             Status::Shifted => &mut self.shifted,
             Status::Stopped => &mut self.stopped,
+            Status::Late => &mut self.late,
+            Status::Lost => &mut self.lost,
         } += 1;
     }
 }

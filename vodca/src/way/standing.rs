@@ -44,7 +44,7 @@ impl Standing {
         let owed = |extra: f64| min_separation + layout.robot_extra[walker] + extra;
         for (other, neighbour) in view.neighbours.iter().enumerate().filter(|(other, _)| *other != walker) {
             let covers = |at: Position| (at - neighbour.set_point).norm() < 0.5 * min_separation;
-            if !neighbour.present.is_some_and(|(_, at)| covers(at)) {
+            if neighbour.lost || !neighbour.present.is_some_and(|(_, at)| covers(at)) {
                 continue;
             }
             self.closed.push(Closed { centre: neighbour.set_point, radius: owed(layout.robot_extra[other]) });

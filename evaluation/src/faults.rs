@@ -1,0 +1,264 @@
+//! Kills one robot's process of a team at a random moment of a random tick, run after run, and counts what that costs
+//! the others.
+
+use crate::text_table::TextTable;
+use coordinator::horizons::RunHorizons;
+use coordinator::record::{RecordError, RunFolder, write_setup};
+use coordinator::run::{OnLoss, Options, Outcome, Run, RunError, RunTick};
+use coordinator::team::ProcessTeam;
+use shared::os;
+use shared::runtime_dir::RuntimeDir;
+use shared::stop::StopFlag;
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::thread;
+use std::time::Duration;
+use vodca::horizon_source::HorizonSpec;
+use vodca::membership::State;
+use vodca::metrics::{RunMetrics, RunSummary};
+use vodca::params::Profile;
+use vodca::play::{Observer, Verdict};
+use vodca::random::{self, Use};
+use vodca::scenario::{SetupError, set_up};
+
+/// Ticks within which the kill falls; teams need about as many to arrive.
+const WITHIN: u64 = 80;
+/// The kill comes up to so long after the tick before has ended, us: before, in the midst of and after planning.
+const DELAY_US: u64 = 2_000;
+/// Robots of a team.
+const ROBOTS: u64 = 14;
+
+/// Why a run could not be done.
+#[derive(Debug, thiserror::Error)]
+pub enum FaultsError {
+    /// Its scenario.
+    #[error(transparent)]
+    Setup(#[from] SetupError),
+    /// Its folder.
+    #[error(transparent)]
+    Record(#[from] RecordError),
+    /// The run.
+    #[error(transparent)]
+    Run(#[from] RunError),
+    /// A folder for it.
+    #[error("cannot make a folder for a run: {0}")]
+    Folder(#[from] std::io::Error),
+}
+
+/// One kill, and what it cost.
+#[derive(Clone, Debug)]
+pub struct Kill {
+    /// Which run, from 0; everything random follows from it.
+    pub number: u64,
+    /// The layout.
+    pub scenario: String,
+    /// Who is killed.
+    pub robot: usize,
+    /// After this tick.
+    pub tick: u64,
+    /// So long after it, us.
+    pub delay_us: u64,
+    /// Whether it is started anew.
+    pub respawn: bool,
+    /// The run came to its end with everybody settled.
+    pub settled: bool,
+    /// Robots that were lost besides.
+    pub other_deaths: usize,
+    /// From the kill until the first new plan of the robot was there, ms.
+    pub rejoin_ms: Option<f64>,
+    /// Files of the run that were left.
+    pub left: usize,
+    /// The figures of the run.
+    pub summary: RunSummary,
+}
+
+impl Kill {
+    /// Robots that arrived.
+    pub fn arrived(&self) -> usize {
+        self.summary.robots.iter().filter(|robot| robot.arrived_tick.is_some()).count()
+    }
+
+    /// Robots that live and might have arrived, but did not.
+    pub fn missing(&self) -> usize {
+        let lost = self.summary.statuses.lost > 0 && !self.respawn;
+        let dead = usize::from(lost && self.summary.robots[self.robot].arrived_tick.is_none());
+        self.summary.robots.len() - self.arrived() - dead - self.summary.shut_off as usize
+    }
+
+    /// Whether nobody but the robot that was killed suffered from it.
+    pub fn is_good(&self) -> bool {
+        self.settled
+            && self.other_deaths == 0
+            && self.missing() == 0
+            && self.left == 0
+            && self.summary.pairs_below_min_separation == 0
+    }
+}
+
+/// Kill number `number`; every second one with a restart.
+///
+/// # Errors
+/// The run could not be done; how it went is no error.
+pub fn kill(number: u64, stop: &StopFlag) -> Result<Kill, FaultsError> {
+    let mut draw = random::stream(number, Use::Fault, ROBOTS, WITHIN);
+    let robot = random::below(&mut draw, ROBOTS) as usize;
+    let (tick, delay_us) = (random::below(&mut draw, WITHIN), random::below(&mut draw, DELAY_US));
+    let respawn = number % 2 == 1;
+    let name = if number % 4 < 2 { "ex14_d".to_string() } else { format!("box:{ROBOTS}:3:{number}") };
+    let (scenario, params) = set_up(Some(&name), None, Profile::Safe, &[])?;
+    let home = tempfile::tempdir()?;
+    let folder = RunFolder::at(&home.path().join("run"))?;
+    write_setup(&folder, &scenario, &params)?;
+    let mut options = Options::new(folder.path(), &scenario).map_err(RunError::from)?;
+    options.on_loss = OnLoss::Continue { respawn: u32::from(respawn) };
+    options.horizons = HorizonSpec::Random(Some(number));
+    let run = Run::launch(&scenario, &params, options, stop)?;
+    let place = run.place().clone();
+    let mut killer = Killer { robot, tick, delay_us, killed_at: Arc::default(), missed: false, rejoin_ms: None };
+    let mut metrics = RunMetrics::new(&scenario, &params);
+    let ended = run.play(&mut [&mut killer], &mut metrics)?;
+    let was_killed = killer.killed_at.load(Ordering::Acquire) > 0;
+    let lost = ended.changes.iter().filter(|change| change.state == State::Lost && change.robot != robot).count();
+    Ok(Kill {
+        number,
+        scenario: name,
+        robot,
+        tick,
+        delay_us,
+        respawn,
+        settled: ended.outcome == Outcome::Completed && (was_killed || metrics.arrived_all()),
+        other_deaths: lost,
+        rejoin_ms: killer.rejoin_ms,
+        left: left(&place),
+        summary: metrics.finish(),
+    })
+}
+
+/// Kills a robot's process after a certain tick and sees when it is back.
+struct Killer {
+    robot: usize,
+    tick: u64,
+    delay_us: u64,
+    /// ns of the monotonic clock; 0: not yet.
+    killed_at: Arc<AtomicU64>,
+    missed: bool,
+    rejoin_ms: Option<f64>,
+}
+
+impl Observer<ProcessTeam, RunHorizons> for Killer {
+    type Error = RecordError;
+
+    fn tick(&mut self, seen: &RunTick<'_>) -> Result<Verdict, RecordError> {
+        let took_part = seen.steps[self.robot].status.took_part();
+        if seen.tick == self.tick
+            && let Some(pid) = seen.team.pid(self.robot)
+        {
+            let (killed_at, delay) = (self.killed_at.clone(), Duration::from_micros(self.delay_us));
+            thread::spawn(move || {
+                thread::sleep(delay);
+                killed_at.store(os::now_ns(), Ordering::Release);
+                os::kill(pid);
+            });
+        }
+        if self.missed && took_part && self.rejoin_ms.is_none() {
+            let since = self.killed_at.load(Ordering::Acquire);
+            self.rejoin_ms = Some(os::now_ns().saturating_sub(since) as f64 / 1e6);
+        }
+        self.missed |= !took_part;
+        Ok(Verdict::Continue)
+    }
+}
+
+/// Files of a run that are still there.
+fn left(place: &RuntimeDir) -> usize {
+    let shared = std::fs::read_dir("/dev/shm").into_iter().flatten().flatten();
+    let ours = shared.filter(|entry| entry.file_name().to_string_lossy().starts_with(&place.prefix)).count();
+    ours + usize::from(Path::new(&place.root).exists())
+}
+
+/// All kills as a table, a row each.
+pub fn table(kills: &[Kill]) -> TextTable {
+    let mut table = TextTable::new(&[
+        "run",
+        "scenario",
+        "robot",
+        "tick",
+        "delay_us",
+        "respawn",
+        "settled",
+        "other_deaths",
+        "pairs_below",
+        "min_separation",
+        "arrived",
+        "shut_off",
+        "missing",
+        "rejoin_ms",
+        "left",
+    ]);
+    for kill in kills {
+        let number = |value: Option<f64>| value.map_or(String::new(), |value| format!("{value:.3}"));
+        table.row([
+            kill.number.to_string(),
+            kill.scenario.clone(),
+            kill.robot.to_string(),
+            kill.tick.to_string(),
+            kill.delay_us.to_string(),
+            kill.respawn.to_string(),
+            kill.settled.to_string(),
+            kill.other_deaths.to_string(),
+            kill.summary.pairs_below_min_separation.to_string(),
+            kill.summary.min_separation.map_or(String::new(), |least| format!("{least:.6}")),
+            kill.arrived().to_string(),
+            kill.summary.shut_off.to_string(),
+            kill.missing().to_string(),
+            number(kill.rejoin_ms),
+            kill.left.to_string(),
+        ]);
+    }
+    table
+}
+
+/// The sums over `kills`: without and with a restart.
+pub fn sums(kills: &[Kill]) -> TextTable {
+    let mut table = TextTable::new(&[
+        "respawn",
+        "runs",
+        "good",
+        "other deaths",
+        "pairs below",
+        "least m",
+        "missing",
+        "shut off",
+        "left",
+        "rejoin p50 ms",
+        "p99",
+        "max",
+    ]);
+    for respawn in [false, true] {
+        let chosen: Vec<&Kill> = kills.iter().filter(|kill| kill.respawn == respawn).collect();
+        let sum = |of: fn(&Kill) -> u64| chosen.iter().map(|kill| of(kill)).sum::<u64>().to_string();
+        let least = chosen.iter().filter_map(|kill| kill.summary.min_separation).fold(f64::INFINITY, f64::min);
+        let mut rejoins: Vec<f64> = chosen.iter().filter_map(|kill| kill.rejoin_ms).collect();
+        rejoins.sort_by(f64::total_cmp);
+        let rank = |share: f64| {
+            let at = ((rejoins.len() as f64 * share).ceil() as usize).clamp(1, rejoins.len().max(1)) - 1;
+            rejoins.get(at).map_or("-".into(), |ms| format!("{ms:.1}"))
+        };
+        table.row([
+            if respawn { "1" } else { "0" }.to_string(),
+            chosen.len().to_string(),
+            sum(|kill| u64::from(kill.is_good())),
+            sum(|kill| kill.other_deaths as u64),
+            sum(|kill| kill.summary.pairs_below_min_separation),
+            format!("{least:.6}"),
+            sum(|kill| kill.missing() as u64),
+            sum(|kill| kill.summary.shut_off),
+            sum(|kill| kill.left as u64),
+            rank(0.5),
+            rank(0.99),
+            rank(1.0),
+        ]);
+    }
+    table
+}
