@@ -2,6 +2,7 @@
 //! processes. Golden tests, sweeps and replays stand on it; agent processes give the same bytes.
 
 use crate::Position;
+use crate::controller::Neighbour;
 use crate::horizon::Horizon;
 use crate::layout::Layout;
 use crate::mpc::cross_check::Comparison;
@@ -81,6 +82,11 @@ impl Team {
     /// Where every robot measures itself at the start of the next tick, m, by robot number.
     pub fn measured(&self) -> &[Position] {
         &self.measured
+    }
+
+    /// What `robot` has heard of everybody when the next tick begins, by robot number.
+    pub fn heard_by(&self, robot: usize) -> &[Neighbour] {
+        self.hearing.get(robot).unwrap_or(&self.hearing[0]).neighbours()
     }
 
     /// What solving every QP twice has found, over all robots; `None` unless [`Self::checked`] built this
