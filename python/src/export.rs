@@ -124,8 +124,7 @@ fn compare(model: &[u8], contract: &Contract, meaning: &Meaning) -> PyResult<f64
         let answer = actor.mean(&input).map_err(broken)?;
         for (robot, (answer, &mean)) in answer.iter().zip(mean).enumerate() {
             let difference = (f64::from(*answer) - mean).abs();
-            // The negation also catches what is no number.
-            if !(difference <= TOLERANCE) {
+            if difference.is_nan() || difference > TOLERANCE {
                 return Err(wrong(format!(
                     "the ONNX file answers case {case} for robot {robot} with {answer}, the policy with {mean}; nothing was \
                      written: the layers are not what the policy computes (order of layers, activation = \"relu\" or \"tanh\", \

@@ -84,13 +84,13 @@ fn written(value: &Bound<'_, PyAny>) -> PyResult<String> {
     })
 }
 
+/// A parameter: key, value, unit, what is allowed, source, effect.
+type Known = (&'static str, Py<PyAny>, &'static str, String, &'static str, &'static str);
+
 /// Every parameter: key, value in `profile`, unit, what is allowed, source, effect.
 #[pyfunction]
 #[pyo3(signature = (profile = "safe"))]
-pub(crate) fn parameters(
-    py: Python<'_>,
-    profile: &str,
-) -> PyResult<Vec<(&'static str, Py<PyAny>, &'static str, String, &'static str, &'static str)>> {
+pub(crate) fn parameters(py: Python<'_>, profile: &str) -> PyResult<Vec<Known>> {
     let params = Params::of(profile.parse().map_err(refused)?);
     table::values(&params)
         .map(|(entry, value)| {

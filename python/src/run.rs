@@ -59,7 +59,7 @@ fn play(setup: Setup, Source { name, mut chosen }: Source) -> PyResult<Run> {
     let on_tick = |tick: u64, steps: &[Step]| {
         timings.observe(&TickTimes::default(), steps);
         ticks.push(steps.to_vec());
-        if tick % LOOK_AROUND == 0 { Python::attach(|py| py.check_signals()) } else { Ok(()) }
+        if tick.is_multiple_of(LOOK_AROUND) { Python::attach(|py| py.check_signals()) } else { Ok(()) }
     };
     let metrics = match run_team::<Chosen, PyErr>(&scenario, &params, &mut chosen, on_tick) {
         Ok(metrics) => metrics,

@@ -3,7 +3,8 @@
     target/python/bin/python results/python/speed.py [SECONDS]
 
 An environment step is one tick of 14 robots of `ex14_d`, safe profile, random horizons. Each figure is the median of five
-takes of SECONDS (1). Prints a Markdown table.
+takes of SECONDS (1). Prints a Markdown table: by the clock, and by the processor's time that the process itself had, which says
+what a quiet machine would give where others were busy.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ from __future__ import annotations
 import os
 import pathlib
 import platform
+import resource
 import statistics
 import subprocess
 import sys
@@ -26,19 +28,27 @@ TAKES, ROBOTS, MANY = 5, 14, 64
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 
-def rate(step, steps_each: int) -> float:
-    """Environment steps per second; `step` plays `steps_each` of them."""
+Figure = tuple[float, float]
+"""Environment steps per second, and per second of processor time."""
 
-    def take() -> float:
-        begun, calls = time.perf_counter(), 0
+
+def medians(takes: list[Figure]) -> Figure:
+    return statistics.median(take[0] for take in takes), statistics.median(take[1] for take in takes)
+
+
+def rate(step, steps_each: int) -> Figure:
+    """How often `step` plays `steps_each` environment steps."""
+
+    def take() -> Figure:
+        begun, used, calls = time.perf_counter(), time.process_time(), 0
         while True:
             step()
             calls += 1
             spent = time.perf_counter() - begun
             if spent > SECONDS:
-                return calls * steps_each / spent
+                return calls * steps_each / spent, calls * steps_each / (time.process_time() - used)
 
-    return statistics.median(take() for _ in range(TAKES))
+    return medians([take() for _ in range(TAKES)])
 
 
 class Empty(ParallelEnv):
@@ -66,7 +76,7 @@ def drawn(count: int) -> list[np.ndarray]:
     return [rng.uniform(-1, 1, (count, ROBOTS)).astype(np.float32) for _ in range(256)]
 
 
-def joint() -> float:
+def joint() -> Figure:
     env, actions, tick = vodca.Env("ex14_d"), drawn(1), 0
     env.reset()
 
@@ -80,7 +90,7 @@ def joint() -> float:
     return rate(step, 1)
 
 
-def each(env: ParallelEnv) -> float:
+def each(env: ParallelEnv) -> Figure:
     actions = [dict(zip(env.possible_agents, row[0][:, None])) for row in drawn(1)]
     tick = 0
     env.reset() if not isinstance(env, Empty) else None
@@ -95,7 +105,7 @@ def each(env: ParallelEnv) -> float:
     return rate(step, 1)
 
 
-def many(threads: int) -> float:
+def many(threads: int) -> Figure:
     envs, actions, tick = vodca.VectorEnv("ex14_d", MANY, threads=threads, autoreset="same_step"), drawn(MANY), 0
     envs.reset()
 
@@ -107,7 +117,7 @@ def many(threads: int) -> float:
     return rate(step, MANY)
 
 
-def rust(threads: int) -> float | None:
+def rust(threads: int) -> Figure | None:
     program = pathlib.Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target")) / "release" / "environments"
     if not program.exists():
         return None
@@ -116,12 +126,14 @@ def rust(threads: int) -> float | None:
         command = ["taskset", "-c", "0", *command]
     takes = []
     for _ in range(TAKES):
+        used = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
         text = subprocess.run(command, capture_output=True, text=True, check=True).stdout
-        takes.append(float(text.split("steps per second")[1]))
-    return statistics.median(takes)
+        used = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - used
+        takes.append((float(text.split("steps per second")[1]), MANY * 200 / used))
+    return medians(takes)
 
 
-def vmas(count: int) -> float | None:
+def vmas(count: int) -> Figure | None:
     try:
         import torch
         from vmas import make_env
@@ -137,7 +149,7 @@ def vmas(count: int) -> float | None:
 def main() -> None:
     busy = os.getloadavg()[0]
     cores = len(os.sched_getaffinity(0))
-    rows: list[tuple[str, float | None]] = [
+    rows: list[tuple[str, Figure | None]] = [
         ("`vodca.Env`, one environment", joint()),
         ("`vodca.parallel_env`, one environment, local observations", each(vodca.parallel_env("ex14_d"))),
         ("PettingZoo alone: 14 agents that see zeros", each(Empty())),
@@ -150,9 +162,10 @@ def main() -> None:
         ("VMAS `navigation`, 14 agents, 256 environments", vmas(256)),
     ]
     print(f"Python {platform.python_version()}, NumPy {np.__version__}, {cores} cores, load {busy:.1f} at the start\n")
-    print("| what | environment steps per second |\n|---|---|")
+    print("| what | environment steps per second | per second of processor time |\n|---|---|---|")
     for what, figure in rows:
-        print(f"| {what} | {'not measured' if figure is None else f'{figure:,.0f}'} |")
+        both = "not measured | not measured" if figure is None else f"{figure[0]:,.0f} | {figure[1]:,.0f}"
+        print(f"| {what} | {both} |")
 
 
 if __name__ == "__main__":
