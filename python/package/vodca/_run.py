@@ -60,6 +60,8 @@ class Summary(dict[str, Any]):
     def __str__(self) -> str:
         return "\n".join(f"{name:<16}{value}" for name, value in self._lines())
 
+    __repr__ = __str__
+
     def _repr_html_(self) -> str:
         rows = (f"<tr><th>{escape(name)}</th><td>{escape(value)}</td></tr>" for name, value in self._lines())
         return f"<table>{''.join(rows)}</table>"
