@@ -56,4 +56,5 @@ def _remade(kind: type, arguments: tuple[Any, ...], keywords: dict[str, Any]) ->
 
 def figures(text: str) -> dict[str, Any]:
     """The figures of an episode."""
-    return json.loads(text)
+    found: dict[str, Any] = json.loads(text)
+    return found

@@ -128,11 +128,11 @@ def _network(policy: Any, activation: str, squash: bool | None, observations: ND
         )
     from ._torch import answers, layers_of, onnx_of
 
-    layers, activation, ends_in_tanh = layers_of(module)
-    if layers is not None and ends_in_tanh:
+    found, activation, ends_in_tanh = layers_of(module)
+    if found is not None and ends_in_tanh:
         # tanh(mean) is what the contract calls squashing: the last layer without it is the mean.
-        return _Network(layers, activation, True, _numpy_answers(layers, activation), bytes)
-    return _Network(layers, activation, bool(squash), answers(module), lambda: onnx_of(module, observations.shape[1]))
+        return _Network(found, activation, True, _numpy_answers(found, activation), bytes)
+    return _Network(found, activation, bool(squash), answers(module), lambda: onnx_of(module, observations.shape[1]))
 
 
 def _float32(numbers: Any) -> NDArray[np.float32]:

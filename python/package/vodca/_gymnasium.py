@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
-from typing import Any
+from operator import index
+from typing import TYPE_CHECKING, Any, SupportsIndex
 
 import gymnasium
 import numpy as np
@@ -15,6 +16,11 @@ from numpy.typing import NDArray
 from . import _native
 from ._environments import FEWEST, MOST, Pickled, Sessions, actions_are_horizons, figures
 from ._parameters import documented
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from ._keywords import Parameters
 
 _SHARED = """
 
@@ -57,7 +63,7 @@ class Env(Pickled, gymnasium.Env):
         max_ticks: int | None = None,
         params: Mapping[str, Any] | None = None,
         render_mode: str | None = None,
-        **keywords: Any,
+        **keywords: Unpack[Parameters],
     ) -> None:
         self._horizons = actions_are_horizons(actions)
         self._native = _native.Environments(
@@ -133,7 +139,7 @@ class VectorEnv(Pickled, gymnasium.vector.VectorEnv):
         max_ticks: int | None = None,
         threads: int = 0,
         params: Mapping[str, Any] | None = None,
-        **keywords: Any,
+        **keywords: Unpack[Parameters],
     ) -> None:
         if autoreset not in ("next_step", "same_step"):
             raise _native.Error(f'autoreset = "{autoreset}" is not known; allowed: "next_step", "same_step"')
@@ -159,11 +165,10 @@ class VectorEnv(Pickled, gymnasium.vector.VectorEnv):
         self, *, seed: int | list[int | None] | None = None, options: dict[str, Any] | None = None
     ) -> tuple[NDArray[np.float32], dict[str, Any]]:
         """Begins an episode everywhere; an integer `seed` is that of environment 0, the others follow."""
-        if seed is None:
-            seeds: list[int | None] = [None] * self.num_envs
-        elif isinstance(seed, int):
-            seeds = [seed + index for index in range(self.num_envs)]
-        else:
+        seeds: list[int | None] = [None] * self.num_envs
+        if isinstance(seed, SupportsIndex):
+            seeds = [index(seed) + number for number in range(self.num_envs)]
+        elif seed is not None:
             seeds = list(seed)
         return self._sessions.reset(seeds), {}
 
@@ -175,9 +180,9 @@ class VectorEnv(Pickled, gymnasium.vector.VectorEnv):
         seen, rewards, _, terminated, truncated, ended = self._native.step(chosen)
         return seen, rewards, terminated, truncated, self._infos(ended) if ended else {}
 
-    def measured(self, index: int) -> NDArray[np.float64]:
-        """Where the robots of environment `index` measure themselves, m, [robots, 2]."""
-        return self._native.measured(index)
+    def measured(self, number: int) -> NDArray[np.float64]:
+        """Where the robots of environment `number` measure themselves, m, [robots, 2]."""
+        return self._native.measured(number)
 
     @property
     def scaling(self) -> tuple[list[float], list[float]]:
@@ -188,15 +193,15 @@ class VectorEnv(Pickled, gymnasium.vector.VectorEnv):
         infos: dict[str, Any] = {}
         last = np.empty(self.num_envs, dtype=object)
         over = np.zeros(self.num_envs, dtype=np.bool_)
-        for index, seen, text in ended:
-            over[index], last[index] = True, seen
-            infos = self._add_info(infos, {"summary": figures(text)}, index)
+        for number, seen, text in ended:
+            over[number], last[number] = True, seen
+            infos = self._add_info(infos, {"summary": figures(text)}, number)
         if self._same_step:
             infos |= {"final_obs": last, "_final_obs": over}
         return infos
 
 
-def _spaces(native: _native.Environments, horizons: bool) -> tuple[spaces.Box, spaces.Space]:
+def _spaces(native: _native.Environments, horizons: bool) -> tuple[spaces.Box, spaces.Space[Any]]:
     low, high = native.bounds()
     robots = native.robots
     seen = spaces.Box(low, high, dtype=np.float32)

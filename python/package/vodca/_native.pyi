@@ -180,7 +180,7 @@ class Environments:
         neighbours: int = 4,
         obstacles: int = 2,
         params: Mapping[str, Any] | None = None,
-        keywords: dict[str, Any] | None = None,
+        keywords: Mapping[str, Any] | None = None,
     ) -> Self: ...
     robots: int
     count: int

@@ -6,10 +6,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 from . import _native
 from ._keywords import Parameters
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
 
 __all__ = ["Parameter", "Parameters", "documented", "effective_parameters", "parameters"]
 
@@ -50,7 +53,7 @@ def parameters(profile: str = "safe") -> list[Parameter]:
 
 
 def effective_parameters(
-    scenario: Any, *, profile: str = "safe", params: Mapping[str, Any] | None = None, **keywords: Any
+    scenario: Any, *, profile: str = "safe", params: Mapping[str, Any] | None = None, **keywords: Unpack[Parameters]
 ) -> dict[str, float | int | bool | str]:
     """The parameters of a run of `scenario`, by key: those of the profile, overlaid by the scenario's, by what is given."""
     return _native.effective(scenario, profile=profile, params=params, **keywords)

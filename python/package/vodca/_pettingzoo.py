@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from gymnasium import spaces
@@ -14,6 +14,11 @@ from pettingzoo import ParallelEnv
 from . import _native
 from ._environments import FEWEST, MOST, Pickled, Sessions, actions_are_horizons, figures
 from ._parameters import documented
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from ._keywords import Parameters
 
 
 class parallel_env(Pickled, ParallelEnv):
@@ -56,7 +61,7 @@ class parallel_env(Pickled, ParallelEnv):
         max_ticks: int | None = None,
         params: Mapping[str, Any] | None = None,
         render_mode: str | None = None,
-        **keywords: Any,
+        **keywords: Unpack[Parameters],
     ) -> None:
         if rewards not in ("objective", "paper"):
             raise _native.Error(f'rewards = "{rewards}" is not known; allowed: "objective", "paper"')
@@ -85,11 +90,11 @@ class parallel_env(Pickled, ParallelEnv):
         low, high = self._native.state_bounds()
         self.state_space = spaces.Box(low, high, dtype=np.float32)
 
-    def observation_space(self, agent: str) -> spaces.Space:
+    def observation_space(self, agent: str) -> spaces.Space[Any]:
         """What `agent` sees."""
         return self.observation_spaces[agent]
 
-    def action_space(self, agent: str) -> spaces.Space:
+    def action_space(self, agent: str) -> spaces.Space[Any]:
         """What `agent` chooses from."""
         return self.action_spaces[agent]
 

@@ -7,13 +7,18 @@ import os
 from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
 from html import escape
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from . import _native
 from ._native import Scenario
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from ._keywords import Parameters
 
 Horizon = int | str | Sequence[int] | NDArray[Any] | Callable[[int, NDArray[np.float64]], Any] | None
 
@@ -26,7 +31,7 @@ def run(
     seed: int | None = None,
     max_ticks: int | None = None,
     params: Mapping[str, Any] | None = None,
-    **keywords: Any,
+    **keywords: Unpack[Parameters],
 ) -> Run:
     """Plays a team in this process until everybody has arrived or `max_ticks` have passed.
 
@@ -120,7 +125,8 @@ class Run:
     @cached_property
     def about(self) -> dict[str, Any]:
         """How the run came about: profile, horizons, seed, versions, machine."""
-        return json.loads(self._native.about())
+        about: dict[str, Any] = json.loads(self._native.about())
+        return about
 
     @property
     def folder(self) -> str | None:
@@ -130,7 +136,8 @@ class Run:
     @cached_property
     def time(self) -> NDArray[np.float64]:
         """Start of every tick and the end of the last one, s, [ticks + 1]."""
-        return np.arange(self.ticks + 1) * self.params["model.sample_time"]
+        sample_time: float = self.params["model.sample_time"]
+        return np.arange(self.ticks + 1, dtype=np.float64) * sample_time
 
     @cached_property
     def positions(self) -> NDArray[np.float64]:

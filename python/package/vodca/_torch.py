@@ -46,7 +46,7 @@ def answers(module: nn.Module) -> Callable[[NDArray[np.float32]], NDArray[Any]]:
         module.eval()
         with torch.no_grad():
             given = torch.from_numpy(observations).to(next(module.parameters()).device)
-            found = module(given).cpu().numpy()
+            found: NDArray[Any] = module(given).cpu().numpy()
         module.train(training)
         return found
 
