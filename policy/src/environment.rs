@@ -36,7 +36,6 @@ pub struct Environment {
 struct Episode {
     scenario: Scenario,
     team: Team,
-    steps: Vec<Step>,
     reward: Reward,
     metrics: RunMetrics,
     /// Ticks after which everybody had arrived for the first time.
@@ -88,13 +87,12 @@ impl Environment {
 
     /// Plays one tick in which robot i plans over `horizons[i]`, moved by `horizon.jitter` as in a run with a policy.
     pub fn step(&mut self, horizons: &mut [Horizon]) -> Ended {
-        let Episode { scenario, team, steps, reward, metrics, arrived } = &mut self.now;
+        let Episode { scenario, team, reward, metrics, arrived } = &mut self.now;
         let tick = team.tick();
         for (robot, horizon) in horizons.iter_mut().enumerate() {
             *horizon = horizon.jittered(self.params.horizon.jitter, scenario.seed, robot, tick);
         }
-        steps.clear();
-        steps.extend_from_slice(team.step(horizons));
+        let steps = team.step(horizons);
         metrics.observe(tick, steps);
         let judgement = reward.tick(tick, steps);
         let played = tick + 1;
@@ -109,13 +107,13 @@ impl Environment {
 
     /// What `robot` earned in the newest tick.
     pub fn share(&self, robot: usize) -> Share {
-        let Episode { team, steps, reward, .. } = &self.now;
-        if steps.is_empty() { Share::default() } else { reward.share(team.tick() - 1, robot, steps) }
+        let (tick, steps) = (self.tick(), self.steps());
+        if tick == 0 { Share::default() } else { self.now.reward.share(tick - 1, robot, steps) }
     }
 
     /// What every robot did in the newest tick, by robot number; nothing before the first one.
     pub fn steps(&self) -> &[Step] {
-        &self.now.steps
+        vodca::play::Playable::steps(&self.now.team) // by its whole name: the trait has a `tick` too
     }
 
     /// Where every robot measures itself at the start of the next tick, m, by robot number.
@@ -146,7 +144,7 @@ impl Environment {
     /// Writes what every robot sees into `out`, one after the other, [`LocalObserver::width`] numbers each. `observer` is
     /// of this episode's layout.
     pub fn observe(&self, observer: &LocalObserver, out: &mut [f32]) {
-        let Episode { team, steps, .. } = &self.now;
+        let (team, steps) = (&self.now.team, self.steps());
         for (robot, out) in out.chunks_exact_mut(observer.width()).enumerate() {
             let last = steps.get(robot);
             observer.observe(robot, team.tick(), team.measured()[robot], last, team.heard_by(robot), out);
@@ -160,7 +158,6 @@ impl Episode {
         let layout = scenario.of_episode(family.as_deref(), *start_jitter, params.model.min_separation, seed)?;
         Ok(Self {
             team: Team::new(&layout, params, seed),
-            steps: Vec::with_capacity(layout.robots.len()),
             reward: Reward::new(&layout, params),
             metrics: RunMetrics::new(&layout, params),
             arrived: None,

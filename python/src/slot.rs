@@ -113,13 +113,16 @@ impl Slot {
             return Ok(());
         }
         let ended = self.environment.step(&mut self.horizons);
-        self.reward = ended.judgement.terms.total();
         if earn != Earn::Nothing {
             for (robot, earned) in self.earned.iter_mut().enumerate() {
                 let share = self.environment.share(robot);
                 *earned = if earn == Earn::Objective { share.objective() } else { share.total() };
             }
         }
+        self.reward = match earn {
+            Earn::Objective => self.earned.iter().sum(),
+            Earn::Nothing | Earn::Paper => ended.judgement.terms.total(),
+        };
         (self.terminated, self.truncated) = (ended.terminated, ended.truncated);
         self.observe(contract, see, out);
         self.ended = ended.terminated || ended.truncated;

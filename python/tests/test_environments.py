@@ -98,6 +98,16 @@ def test_the_reward_of_a_robot_is_its_own():
     assert env.agents == [], "all leave together"
 
 
+def test_a_team_may_earn_by_path_and_time():
+    run = vodca.run("four_gate", horizon=24)
+    env = vodca.Env("four_gate", actions="horizon", rewards="objective")
+    env.reset()
+    earned = [env.step([24] * 4)[1] for _ in range(run.ticks)]
+    np.testing.assert_allclose(earned, run.robot_rewards().sum(axis=1), rtol=1e-12)
+    with pytest.raises(vodca.Error, match='allowed: "paper", "objective"'):
+        vodca.Env("four_gate", rewards="mine")
+
+
 def test_seeds_decide_and_every_episode_has_starts_of_its_own():
     envs = [vodca.Env("two_setpoint", profile="paper", start_jitter=0.3) for _ in range(2)]
     first = [env.reset(seed=5)[0] for env in envs]

@@ -21,6 +21,13 @@ def actions_are_horizons(actions: str) -> bool:
     return actions == "horizon"
 
 
+def team_rewards(rewards: str) -> str:
+    """What a team earns, as the extension calls it."""
+    if rewards not in ("paper", "objective"):
+        raise _native.Error(f'rewards = "{rewards}" is not known; allowed: "paper", "objective"')
+    return "team" if rewards == "paper" else rewards
+
+
 class Sessions:
     """Seeds of episodes: a seed begins a session, whose episodes have seeds of their own; no seed goes on with it."""
 

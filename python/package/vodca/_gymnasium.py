@@ -14,7 +14,7 @@ from gymnasium.vector import AutoresetMode
 from numpy.typing import NDArray
 
 from . import _native
-from ._environments import FEWEST, MOST, Pickled, Sessions, actions_are_horizons, figures
+from ._environments import FEWEST, MOST, Pickled, Sessions, actions_are_horizons, figures, team_rewards
 from ._parameters import documented
 
 if TYPE_CHECKING:
@@ -28,7 +28,9 @@ _SHARED = """
     -1..1 over the scenario (float32 [2 robots]; `scaling` says how), what a policy sees that `export` makes of it. With
     `observation="local"` it is what each robot sees in its own frame, float32 [robots, numbers], as in `parallel_env`.
     The action is one number per robot: the paper's a in -1..1, N = ceil(1 + 24 (a + 1)) (`actions="continuous"`, float32
-    [robots]), or the prediction horizon itself, 1..49 (`actions="horizon"`, int64 [robots]). The reward is the paper's R.
+    [robots]), or the prediction horizon itself, 1..49 (`actions="horizon"`, int64 [robots]). The reward
+    is the paper's R (`rewards="paper"`), or what the robots earn by path and time (`rewards="objective"`): minus all detours (m),
+    minus 0.03 m for each tick of each robot that has not arrived, minus 5 m for each robot in a collision.
     An episode is terminated by a collision, truncated `after_arrival` ticks after everybody has arrived, or at K (only there
     with `after_arrival=None`).
 
@@ -54,6 +56,7 @@ class Env(Pickled, gymnasium.Env):
         profile: str = "safe",
         observation: str = "positions",
         actions: str = "continuous",
+        rewards: str = "paper",
         neighbours: int = 4,
         obstacles: int = 2,
         start_jitter: float = 0.0,
@@ -67,7 +70,7 @@ class Env(Pickled, gymnasium.Env):
     ) -> None:
         self._horizons = actions_are_horizons(actions)
         self._native = _native.Environments(
-            scenario, 1, observation=observation, rewards="team", autoreset="disabled", threads=1, profile=profile,
+            scenario, 1, observation=observation, rewards=team_rewards(rewards), autoreset="disabled", threads=1, profile=profile,
             seed=seed, max_ticks=max_ticks, start_jitter=start_jitter, family=family, after_arrival=after_arrival,
             neighbours=neighbours, obstacles=obstacles, params=params, keywords=keywords,
         )
@@ -129,6 +132,7 @@ class VectorEnv(Pickled, gymnasium.vector.VectorEnv):
         profile: str = "safe",
         observation: str = "positions",
         actions: str = "continuous",
+        rewards: str = "paper",
         autoreset: str = "next_step",
         neighbours: int = 4,
         obstacles: int = 2,
@@ -145,7 +149,7 @@ class VectorEnv(Pickled, gymnasium.vector.VectorEnv):
             raise _native.Error(f'autoreset = "{autoreset}" is not known; allowed: "next_step", "same_step"')
         self._horizons = actions_are_horizons(actions)
         self._native = _native.Environments(
-            scenario, num_envs, observation=observation, rewards="team", autoreset=autoreset, threads=threads,
+            scenario, num_envs, observation=observation, rewards=team_rewards(rewards), autoreset=autoreset, threads=threads,
             profile=profile, seed=seed, max_ticks=max_ticks, start_jitter=start_jitter, family=family,
             after_arrival=after_arrival, neighbours=neighbours, obstacles=obstacles, params=params, keywords=keywords,
         )
