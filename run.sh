@@ -24,6 +24,7 @@ build() { # build ARGUMENTS: silent when there is little to do
 
 case ${1-} in
 test) shift; cargo_release test --workspace "$@"; exit ;;
+python) shift; exec "$root/python/install.sh" "$@" ;;
 policy) shift; build -p policy-server; exec "$target/release/policy-server" "$@" ;;
 learner) shift; build -p learner; exec "$target/release/learner" "$@" ;;
 learn) build -p learner; exec "$target/release/learner" "$@" ;;

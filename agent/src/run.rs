@@ -139,8 +139,8 @@ impl<D: Drive> Episode<D> {
         let lost = |robot| absent.iter().find(|told| told.0 == robot && told.1 == State::Lost).map(|told| told.2);
         if self.lost.iter().enumerate().any(|(robot, known)| *known != lost(robot)) {
             self.lost.iter_mut().enumerate().for_each(|(robot, known)| *known = lost(robot));
-            let min_separation = self.setup.params.model.min_separation;
-            self.drive.lay_out(&Arc::new(Layout::with_lost(&self.setup.scenario, min_separation, &self.lost)));
+            let Setup { scenario, params, .. } = &self.setup;
+            self.drive.lay_out(&Arc::new(Layout::with_lost(scenario, &params.model, &self.lost)));
         }
         for &(robot, state, at) in absent {
             self.hearing.note_absent(tick, robot, state, at);

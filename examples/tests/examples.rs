@@ -43,6 +43,12 @@ fn a_policy_drives_a_team_in_this_process() {
 }
 
 #[test]
+fn environments_are_played_on_all_cores() {
+    let text = run(env!("CARGO_BIN_EXE_environments"), &["two_setpoint", "4", "100"]);
+    assert!(text.starts_with("episodes ended   4\n"), "{text}");
+}
+
+#[test]
 fn a_body_of_ones_own_drives_in_a_run_of_processes() {
     let by_hand = Run::start(Robots::Real, "2 --by-hand");
     let commands = |run: &Run| -> Vec<Vec<String>> {
@@ -75,5 +81,5 @@ fn every_example_has_fewer_than_sixty_lines() {
             examples += 1;
         }
     }
-    assert_eq!(examples, 6);
+    assert_eq!(examples, 7);
 }

@@ -3,7 +3,7 @@
 use crate::actor::Actor;
 use policy::contract::{Contract, METADATA_KEY};
 use policy::folder::{FolderError, PolicyFolder, Version};
-use policy::onnx::{ActorGraph, Dense};
+use policy::onnx::{Activation, ActorGraph, Dense};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use vodca::Position;
@@ -101,6 +101,7 @@ fn graph(actor: &Actor, contract: &Contract) -> Result<ActorGraph, ExportError> 
     let bounds = actor.bounds();
     Ok(ActorGraph {
         hidden,
+        activation: Activation::Relu,
         mean,
         log_std: Some(log_std),
         log_std_bounds: (bounds.low, bounds.high),

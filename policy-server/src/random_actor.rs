@@ -1,7 +1,7 @@
 //! `policy new --random`: a valid actor that was never trained, to try things with.
 
 use policy::contract::{Contract, METADATA_KEY};
-use policy::onnx::{ActorGraph, Dense};
+use policy::onnx::{Activation, ActorGraph, Dense};
 use std::collections::BTreeMap;
 use vodca::random::{self, Use};
 
@@ -28,6 +28,7 @@ pub fn random_actor(robots: usize, seed: u64) -> (Vec<u8>, Contract) {
     };
     let graph = ActorGraph {
         hidden: vec![layer(0, 2 * robots, HIDDEN, 1.0), layer(1, HIDDEN, HIDDEN, 1.0)],
+        activation: Activation::Relu,
         mean: layer(2, HIDDEN, robots, 8.0),
         log_std: Some(layer(3, HIDDEN, robots, 1.0)),
         log_std_bounds: LOG_STD_BOUNDS,

@@ -6,6 +6,7 @@
 pub mod contract;
 pub mod digest;
 pub mod encoding;
+pub mod environment;
 pub mod folder;
 pub mod onnx;
 pub mod reward;

@@ -3,6 +3,9 @@
 //! R = sum over robots of (R_p - R_h - R_c + R_term) - R_v, once per tick. A tick leads from `x[k-1]` to
 //! `x[k]` with the horizons N^{k-1}; De is how much nearer the set-point it brought the robot. The paper
 //! prints the label of R_p twice; the second one is R_c.
+//!
+//! The paper's reward belongs to the team. What a robot earns for itself is either its share of that
+//! ([`Share::total`]; R_v has no share) or the [`Share::objective`], which ranks as runs are ranked: by path and time.
 
 use vodca::Position;
 use vodca::horizon::Horizon;
@@ -22,6 +25,10 @@ const LAMBDA_H: f64 = 0.001;
 const COLLISION: f64 = 100.0;
 /// R_term.
 const ARRIVED: f64 = 150.0;
+/// What a tick costs in the objective of a robot that has not arrived, m.
+const TICK: f64 = 0.03;
+/// What a tick in a collision costs in the objective, m.
+const COLLIDED: f64 = 5.0;
 
 /// What one tick was worth, summed over robots. The five terms have the paper's signs: progress and
 /// arrival are gained, horizon, collision and variance are lost.
@@ -43,6 +50,46 @@ impl Terms {
     /// R, as the paper adds it up.
     pub fn total(&self) -> f64 {
         self.progress - self.horizon - self.collision + self.arrival - self.variance
+    }
+}
+
+/// What one tick was worth to one robot. The paper's terms have its signs, as in [`Terms`].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Share {
+    /// R_p, propagation.
+    pub progress: f64,
+    /// R_h, computation.
+    pub horizon: f64,
+    /// R_c, collision.
+    pub collision: f64,
+    /// R_term, termination.
+    pub arrival: f64,
+    /// What it went farther than it came nearer, m; 0 on a straight line to the set-point.
+    pub detour: f64,
+}
+
+impl Share {
+    /// The robot's share of R: R_p - R_h - R_c + R_term.
+    pub fn total(&self) -> f64 {
+        self.progress - self.horizon - self.collision + self.arrival
+    }
+
+    /// Minus its detour, minus 0.03 m until it has arrived, minus 5 m in a collision. Over a run it adds up to how much
+    /// longer than straight the path was, and to the time; nothing pays delay, as R_p and R_term do.
+    pub fn objective(&self) -> f64 {
+        let waiting = if self.arrived() { 0.0 } else { TICK };
+        let collided = if self.collided() { COLLIDED } else { 0.0 };
+        -self.detour - waiting - collided
+    }
+
+    /// Whether it is within the arrival tolerance of its set-point.
+    pub fn arrived(&self) -> bool {
+        self.arrival > 0.0
+    }
+
+    /// Whether its disc is in a collision.
+    pub fn collided(&self) -> bool {
+        self.collision > 0.0
     }
 }
 
@@ -85,24 +132,32 @@ impl Reward {
     /// Rewards tick `tick` (from 0), in which robot i did `steps[i]`.
     pub fn tick(&self, tick: u64, steps: &[Step]) -> Judgement {
         let mut judgement = Judgement { arrived: true, ..Judgement::default() };
-        let left = self.max_ticks.saturating_sub(tick + 1) as f64; // K - k, k counted after the move
-        for (robot, (step, set_point)) in steps.iter().zip(&self.set_points).enumerate() {
-            let (before, after) = ((set_point - step.position).norm(), (set_point - step.next_position).norm());
+        for robot in 0..steps.len() {
+            let share = self.share(tick, robot, steps);
             let terms = &mut judgement.terms;
-            terms.progress += progress(before - after);
-            terms.horizon += LAMBDA_H * step.horizon.steps() as f64;
-            if after < self.tolerance {
-                terms.arrival += ARRIVED;
-            } else {
-                judgement.arrived = false;
-            }
-            if self.collides(robot, steps) {
-                judgement.terms.collision += COLLISION + left;
-                judgement.collided = true;
-            }
+            terms.progress += share.progress;
+            terms.horizon += share.horizon;
+            terms.collision += share.collision;
+            terms.arrival += share.arrival;
+            judgement.arrived &= share.arrived();
+            judgement.collided |= share.collided();
         }
         judgement.terms.variance = variance(steps.iter().map(|step| step.horizon));
         judgement
+    }
+
+    /// What `robot` earns in tick `tick` (from 0), in which robot i did `steps[i]`.
+    pub fn share(&self, tick: u64, robot: usize, steps: &[Step]) -> Share {
+        let (step, set_point) = (&steps[robot], self.set_points[robot]);
+        let (before, after) = ((set_point - step.position).norm(), (set_point - step.next_position).norm());
+        let left = self.max_ticks.saturating_sub(tick + 1) as f64; // K - k, k counted after the move
+        Share {
+            progress: progress(before - after),
+            horizon: LAMBDA_H * step.horizon.steps() as f64,
+            collision: if self.collides(robot, steps) { COLLISION + left } else { 0.0 },
+            arrival: if after < self.tolerance { ARRIVED } else { 0.0 },
+            detour: (step.next_position - step.position).norm() - (before - after),
+        }
     }
 
     /// Whether `robot` came nearer than the collision distance to anything during this tick.
@@ -205,6 +260,26 @@ mod tests {
     fn the_total_has_the_signs_of_the_paper() {
         let terms = Terms { progress: 1.0, horizon: 2.0, collision: 4.0, arrival: 8.0, variance: 16.0 };
         assert_eq!(terms.total(), 1.0 - 2.0 - 4.0 + 8.0 - 16.0);
+    }
+
+    #[test]
+    fn the_team_earns_what_its_robots_earn_less_the_variance() {
+        let steps = [step([9.7, 0.0], [9.95, 0.0], 9), step([0.0, 3.0], [0.4, 3.3], 40)];
+        let Judgement { terms, .. } = reward().tick(10, &steps);
+        let shares = [0, 1].map(|robot| reward().share(10, robot, &steps).total());
+        assert_eq!(terms.total(), shares[0] + shares[1] - 15.5 * 15.5);
+    }
+
+    #[test]
+    fn the_objective_adds_up_to_the_detour_and_the_time() {
+        // Two moves of 0.5 m, off the straight line and back to it, then the last metre; 8 m are straight.
+        let way = [[0.0, 0.0], [0.4, 0.3], [0.8, 0.0], [9.95, 0.0], [9.95, 0.0]];
+        let apart = |from, to| [step(from, to, 1), step([0.0, 9.0], [0.0, 9.0], 1)];
+        let all: f64 = way.windows(2).map(|move_| reward().share(0, 0, &apart(move_[0], move_[1])).objective()).sum();
+        let detour = 0.5 + 0.5 + 9.15 - 9.95;
+        assert!((all + detour + 2.0 * 0.03).abs() < 1e-9, "{all}");
+        let close = [step([0.0, 0.0], [0.0, 0.0], 1), step([0.0, 0.74], [0.0, 0.74], 1)];
+        assert!((reward().share(0, 0, &close).objective() + 5.03).abs() < 1e-9);
     }
 
     #[test]

@@ -70,9 +70,6 @@ pub struct Episodes {
     pub family: Option<String>,
 }
 
-/// Layouts of a family: enough that no two episodes need share one, few enough to type.
-const LAYOUTS: u64 = 1_000_000;
-
 impl Episodes {
     /// Number of the episode with `epoch` ([`FIRST_EPOCH`] and on).
     pub fn number(&self, epoch: u64) -> u64 {
@@ -85,18 +82,7 @@ impl Episodes {
     /// # Errors
     /// A layout that cannot be made, or that has no room for moved starts.
     pub fn scenario(&self, scenario: &Scenario, params: &Params, seed: u64) -> Result<Scenario, ScenarioError> {
-        let mut layout = match &self.family {
-            Some(family) => {
-                let spec = format!("{family}:{}", seed % LAYOUTS);
-                Scenario { max_ticks: scenario.max_ticks, ..Scenario::resolve(Some(&spec), None)? }
-            }
-            None => scenario.clone(),
-        };
-        layout.seed = seed;
-        if self.start_jitter == 0.0 {
-            return Ok(layout);
-        }
-        layout.jittered(self.start_jitter, params.model.min_separation, seed)
+        scenario.of_episode(self.family.as_deref(), self.start_jitter, params.model.min_separation, seed)
     }
 }
 

@@ -37,13 +37,13 @@ fn files(ending: &str) -> Vec<PathBuf> {
     found
 }
 
-/// The arguments that `run.sh` hands to the program `vodca`; `None` for what it does itself or hands to the policy
-/// server or the learner (whose heavy builds this test does not need).
+/// The arguments that `run.sh` hands to the program `vodca`; `None` for what it does itself or hands to others (whose
+/// heavy builds this test does not need).
 fn arguments(line: &str) -> Option<Vec<String>> {
     let command = line.trim().strip_prefix("./run.sh ")?.split(" #").next()?;
     let mut words: Vec<String> = command.split_whitespace().map(str::to_owned).collect();
     let first = words.first()?.clone();
-    if ["test", "policy", "learn", "learner", "train"].contains(&first.as_str()) {
+    if ["test", "python", "policy", "learn", "learner", "train"].contains(&first.as_str()) {
         return None;
     }
     if first.starts_with(|c: char| c.is_ascii_digit()) || first.starts_with("--scenario") {

@@ -33,3 +33,29 @@ fn every_program_is_built_from_the_dependencies_of_the_tests() {
         );
     }
 }
+
+/// Name and version of every package in a lock file.
+fn locked(file: &str) -> BTreeSet<(String, String)> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(file);
+    let text = std::fs::read_to_string(path).expect("a lock file");
+    let value = |block: &str, key: &str| {
+        let line = block.lines().find_map(|line| line.strip_prefix(key)?.strip_prefix(" = "));
+        line.map_or_else(String::new, |value| value.trim_matches('"').to_string())
+    };
+    text.split("[[package]]").skip(1).map(|block| (value(block, "name"), value(block, "version"))).collect()
+}
+
+#[test]
+fn the_python_package_has_the_versions_of_the_programs() {
+    let next = "copy Cargo.lock to python/ and run `cargo metadata` there: it adds what only the package needs";
+    let (all, package) = (locked("Cargo.lock"), locked("python/Cargo.lock"));
+    let names: BTreeSet<&String> = all.iter().map(|(name, _)| name).collect();
+    let other: Vec<_> = package.difference(&all).filter(|(name, _)| names.contains(name)).collect();
+    assert!(package.len() > 100 && other.is_empty(), "{other:?} are not those of Cargo.lock; {next}");
+    let output = Command::new(env!("CARGO"))
+        .args(["tree", "--locked", "--depth", "0", "--manifest-path", "python/Cargo.toml"])
+        .current_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join(".."))
+        .output()
+        .expect("cargo is there");
+    assert!(output.status.success(), "{}; {next}", String::from_utf8_lossy(&output.stderr));
+}

@@ -76,6 +76,7 @@ pub mod geometry;
 pub mod horizon;
 pub mod horizon_source;
 pub mod layout;
+pub mod local_observation;
 pub mod membership;
 pub mod metrics;
 pub mod mpc;

@@ -2,12 +2,13 @@
 //! processes. Golden tests, sweeps and replays stand on it; agent processes give the same bytes.
 
 use crate::Position;
+use crate::controller::Neighbour;
 use crate::horizon::Horizon;
 use crate::layout::Layout;
 use crate::membership::State;
 use crate::mpc::cross_check::Comparison;
 use crate::neighbour_estimates::NeighbourEstimates;
-use crate::params::{Disturbance, Params};
+use crate::params::{Disturbance, Model, Params};
 use crate::play::Playable;
 use crate::robot::Robot;
 use crate::scenario::Scenario;
@@ -24,7 +25,7 @@ pub struct Team {
     measured: Vec<Position>,
     tick: u64,
     scenario: Scenario,
-    min_separation: f64,
+    model: Model,
     /// Where lost robots stand as everybody's layout has it, m, by robot number; empty: nobody was ever lost.
     lost: Vec<Option<Position>>,
 }
@@ -74,7 +75,7 @@ impl Team {
             robots,
             tick: 0,
             scenario: scenario.clone(),
-            min_separation: params.model.min_separation,
+            model: params.model.clone(),
             lost: Vec::new(),
         }
     }
@@ -129,7 +130,7 @@ impl Team {
         let of = |robot: usize, state| roll.get(robot).is_some_and(|attendance| attendance.announced == state);
         let lost: Vec<_> = (0..at.len()).map(|robot| of(robot, State::Lost).then_some(at[robot])).collect();
         if lost != self.lost && (!self.lost.is_empty() || lost.iter().any(Option::is_some)) {
-            let layout = Arc::new(Layout::with_lost(&self.scenario, self.min_separation, &lost));
+            let layout = Arc::new(Layout::with_lost(&self.scenario, &self.model, &lost));
             self.robots.iter_mut().for_each(|robot| robot.lay_out(&layout));
             self.lost = lost;
         }
@@ -147,6 +148,11 @@ impl Team {
     /// Where every robot measures itself at the start of the next tick, m, by robot number.
     pub fn measured(&self) -> &[Position] {
         &self.measured
+    }
+
+    /// What `robot` has heard of everybody when the next tick begins, by robot number.
+    pub fn heard_by(&self, robot: usize) -> &[Neighbour] {
+        self.hearing.get(robot).unwrap_or(&self.hearing[0]).neighbours()
     }
 
     /// What solving every QP twice has found, over all robots; `None` unless [`Self::checked`] built this

@@ -48,6 +48,20 @@ fn lots_without_room_are_filled_from_their_middle() {
 }
 
 #[test]
+fn who_is_in_the_place_of_another_is_let_out() {
+    for (name, seed) in [("park:16:28", 2), ("park:16:45", 4), ("park:36:98", 1)] {
+        assert!(arrives(name, Some(20), seed, &[]), "{name}");
+    }
+}
+
+#[test]
+fn a_set_point_is_entered_from_a_side_on_which_nobody_stands() {
+    for (name, seed) in [("park:36:76", 0), ("park:36:58", 0), ("park:36:37", 0)] {
+        assert!(arrives(name, None, seed, &[]), "{name}");
+    }
+}
+
+#[test]
 fn robots_wedged_between_each_other_come_apart() {
     assert!(arrives("permute:16:5", Some(20), 5, &[]));
     let without = arrives("permute:16:5", Some(20), 5, &["vodca.back_off=1"]);

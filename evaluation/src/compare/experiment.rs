@@ -204,7 +204,7 @@ mod tests {
     use super::*;
     use crate::compare::{ControllerSpecs, expand};
     use policy::contract::Contract;
-    use policy::onnx::{ActorGraph, Dense};
+    use policy::onnx::{Activation, ActorGraph, Dense};
 
     fn runs(controller: &str, scenario: &str, change: impl Fn(&mut Experiment)) -> Result<Vec<(String, u64)>, String> {
         let mut experiment = Experiment {
@@ -286,6 +286,7 @@ mod tests {
         };
         let graph = ActorGraph {
             hidden: vec![layer(28, 8)],
+            activation: Activation::Relu,
             mean: layer(8, 14),
             log_std: None,
             log_std_bounds: (-20.0, 2.0),

@@ -326,19 +326,8 @@ fn layouts(plan: &TrainingConfig) -> Result<Vec<Scenario>, TrainError> {
 
 /// Positions scaled to [-1, 1] over everything that stands in the layouts.
 fn contract(plan: &TrainingConfig, layouts: &[Scenario]) -> Contract {
-    let points = layouts.iter().flat_map(|layout| {
-        let robots = layout.robots.iter().flat_map(|robot| [robot.start, robot.set_point]);
-        let rings = layout.shapes.iter().flat_map(|shape| shape.rings().iter().flatten().copied());
-        robots.chain(layout.obstacles.iter().map(|obstacle| obstacle.position)).chain(rings)
-    });
-    let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
-    for point in points {
-        for (axis, at) in [point.x, point.y].into_iter().enumerate() {
-            (low[axis], high[axis]) = (low[axis].min(at), high[axis].max(at));
-        }
-    }
     let mut contract = Contract::standard(layouts[0].robots.len(), true);
-    contract.observation = Observation::over(low, high);
+    contract.observation = Observation::over_layouts(layouts);
     contract.name = Some(plan.scenario.clone());
     contract.producer = Some(format!("vodca learner {}", env!("CARGO_PKG_VERSION")));
     contract.trained_from = Some(format!("{} {} seed {}", plan.scenario, plan.profile, plan.seed));

@@ -2,7 +2,7 @@
 #![allow(dead_code)] // each test file uses its part
 
 use policy::contract::Contract;
-use policy::onnx::{ActorGraph, Dense};
+use policy::onnx::{Activation, ActorGraph, Dense};
 use policy_server::actor::BackEnd;
 use policy_server::check::{Limits, Prober};
 use std::collections::BTreeMap;
@@ -25,6 +25,7 @@ pub(crate) fn dense(inputs: usize, outputs: usize, weight: f32, bias: f32) -> De
 pub(crate) fn constant_actor(robots: usize, mean: f32) -> ActorGraph {
     ActorGraph {
         hidden: vec![dense(2 * robots, 8, 0.01, 0.1)],
+        activation: Activation::Relu,
         mean: dense(8, robots, 0.0, mean),
         log_std: Some(dense(8, robots, 0.0, -1.0)),
         log_std_bounds: (-20.0, 2.0),

@@ -15,6 +15,7 @@ use super::onnx::Dim;
 use serde::{Deserialize, Serialize};
 use vodca::Position;
 use vodca::horizon::{Horizon, MAX_HORIZON};
+use vodca::scenario::Scenario;
 
 /// The format that is read and written.
 pub const SCHEMA: &str = "vodca/policy/1";
@@ -222,6 +223,22 @@ impl Observation {
             scale: [0, 1].map(|axis| 2.0 / (high[axis] - low[axis]).max(SHORTEST_SIDE)),
             ..Self::default()
         }
+    }
+
+    /// Scales the box around all starts, set-points and obstacles of `layouts` to [-1, 1] on each axis.
+    pub fn over_layouts(layouts: &[Scenario]) -> Self {
+        let points = layouts.iter().flat_map(|layout| {
+            let robots = layout.robots.iter().flat_map(|robot| [robot.start, robot.set_point]);
+            let rings = layout.shapes.iter().flat_map(|shape| shape.rings().iter().flatten().copied());
+            robots.chain(layout.obstacles.iter().map(|obstacle| obstacle.position)).chain(rings)
+        });
+        let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+        for point in points {
+            for (axis, at) in [point.x, point.y].into_iter().enumerate() {
+                (low[axis], high[axis]) = (low[axis].min(at), high[axis].max(at));
+            }
+        }
+        Self::over(low, high)
     }
 
     /// A coordinate on `axis` (0: x, 1: y), m, as the model takes it.

@@ -10,4 +10,4 @@ mod write;
 pub use bounds::WireError;
 pub use read::{Dim, Model, Node, OnnxError, Opset, Port};
 pub use tensor::{ElementType, Tensor};
-pub use write::{ActorGraph, Dense};
+pub use write::{Activation, ActorGraph, Dense};

@@ -1,4 +1,4 @@
-//! Writes an actor as an ONNX file: `state` -> Gemm, Relu, ... -> `mean`, `log_std`.
+//! Writes an actor as an ONNX file: `state` -> Gemm, Relu or Tanh, ... -> `mean`, `log_std`.
 
 use super::proto::{
     AttributeProto, DimensionProto, GraphProto, Message, ModelProto, NodeProto, OperatorSetIdProto,
@@ -27,12 +27,33 @@ pub struct Dense {
     pub bias: Vec<f32>,
 }
 
-/// A squashed-Gaussian actor: hidden layers with ReLU, then a linear `mean` and, if it can be
+/// What follows a hidden layer.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Activation {
+    /// max(0, x).
+    #[default]
+    Relu,
+    /// tanh x.
+    Tanh,
+}
+
+impl Activation {
+    fn operator(self) -> &'static str {
+        match self {
+            Self::Relu => "Relu",
+            Self::Tanh => "Tanh",
+        }
+    }
+}
+
+/// A squashed-Gaussian actor: hidden layers with ReLU or tanh, then a linear `mean` and, if it can be
 /// sampled, a clipped linear `log_std`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ActorGraph {
-    /// Hidden layers, each followed by a ReLU.
+    /// Hidden layers, each followed by the activation.
     pub hidden: Vec<Dense>,
+    /// What follows each of them.
+    pub activation: Activation,
     /// Mean of the raw action.
     pub mean: Dense,
     /// Logarithm of its standard deviation.
@@ -57,7 +78,7 @@ impl ActorGraph {
             let name = format!("hidden{layer}");
             let sum = format!("{name}.sum");
             dense.add_to(&mut graph, &from, &name, &sum);
-            graph.node.push(node("Relu", &name, &[&sum], &name));
+            graph.node.push(node(self.activation.operator(), &name, &[&sum], &name));
             from = name;
         }
         self.mean.add_to(&mut graph, &from, "mean", "mean");
@@ -151,6 +172,7 @@ mod tests {
     fn actor() -> ActorGraph {
         ActorGraph {
             hidden: vec![dense(4, 8), dense(8, 8)],
+            activation: Activation::Relu,
             mean: dense(8, 2),
             log_std: Some(dense(8, 2)),
             log_std_bounds: (-20.0, 2.0),
@@ -190,6 +212,7 @@ mod tests {
         let entry = |entry: &StringStringEntryProto| (entry.key.clone().unwrap(), entry.value.clone().unwrap());
         ActorGraph {
             hidden: (0..).map_while(|layer| dense(&format!("hidden{layer}"))).collect(),
+            activation: Activation::Relu,
             mean: dense("mean").unwrap(),
             log_std: dense("log_std"),
             log_std_bounds: (numbers("low").unwrap()[0], numbers("high").unwrap()[0]),

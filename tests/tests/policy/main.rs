@@ -12,7 +12,7 @@ mod swap;
 mod training;
 
 use policy::contract::Contract;
-use policy::onnx::{ActorGraph, Dense};
+use policy::onnx::{Activation, ActorGraph, Dense};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -53,6 +53,7 @@ fn actor(robots: usize, steps: usize) -> (Vec<u8>, Contract) {
     };
     let graph = ActorGraph {
         hidden: vec![layer(2 * robots, 64, 0.01, 0.0)],
+        activation: Activation::Relu,
         mean: layer(64, robots, 0.0, mean),
         log_std: Some(layer(64, robots, 0.0, -1.0)),
         log_std_bounds: (-20.0, 2.0),

@@ -7,8 +7,33 @@ use world::shape::Obstacles;
 
 /// Draws per robot before the spread counts as too large.
 const ATTEMPTS: usize = 10_000;
+/// Layouts of a family: enough that no two episodes need share one, few enough to type.
+const LAYOUTS: u64 = 1_000_000;
 
 impl Scenario {
+    /// The layout of the episode with `seed`: this one, or of `family` (a generated layout less its seed, `box:8:3`)
+    /// the one of that seed, with every start moved by up to `spread` metres per axis ([`Self::jittered`]).
+    ///
+    /// # Errors
+    /// A layout that cannot be made, or that has no room for moved starts.
+    pub fn of_episode(
+        &self,
+        family: Option<&str>,
+        spread: f64,
+        min_separation: f64,
+        seed: u64,
+    ) -> Result<Self, ScenarioError> {
+        let mut layout = match family {
+            Some(family) => {
+                let spec = format!("{family}:{}", seed % LAYOUTS);
+                Scenario { max_ticks: self.max_ticks, ..Scenario::resolve(Some(&spec), None)? }
+            }
+            None => self.clone(),
+        };
+        layout.seed = seed;
+        if spread == 0.0 { Ok(layout) } else { layout.jittered(spread, min_separation, seed) }
+    }
+
     /// This scenario with every start moved by a uniform draw from `-spread..=spread` metres per axis.
     /// A draw that overlaps an obstacle or a robot moved before is repeated; where `allow_close_start`
     /// is set only coinciding starts are. The same `seed` gives the same starts.

@@ -80,10 +80,12 @@ pub fn regard_others(
         let regard = match neighbour.present {
             _ if other == robot => Regard::Plan,
             Some((_, from)) if parks => {
-                // Only whom those who stand shut in together.
+                // Only whom those who stand shut in together, or who is in its place.
+                let owed = layout.owed(min_separation, robot, other);
+                let in_place = (from - to).norm() < owed && (neighbour.set_point - from).norm() > way;
                 let seen = View { position: from, ..*view };
                 standing.look(params, layout, other, &seen);
-                if standing.shuts_in(&layout.routes[other], from, neighbour.set_point) {
+                if in_place || standing.shuts_in(&layout.routes[other], from, neighbour.set_point) {
                     Regard::Wish
                 } else {
                     Regard::Stays

@@ -16,8 +16,9 @@ pub struct Route {
     /// By corner: the set-points between it and the end of the way; `None`: an obstacle is.
     sees_end: Vec<Option<RobotSet>>,
     /// Places right before the set-point from which a robot gets in between those who stand beside it, and the
-    /// set-points between each corner and them.
+    /// set-points between there and the end, and between each corner and the end by that way.
     entry: Position,
+    inwards: RobotSet,
     sees_entry: Vec<Option<RobotSet>>,
     /// The rest of the way while nobody stands.
     alone: Rest,
@@ -64,14 +65,16 @@ impl Route {
 
     fn new(robot: usize, set_point: Position, separation: f64, corners: Arc<Corners>) -> Self {
         let Corners { ground, places, at, .. } = &*corners;
-        let sees = |to: Position| {
+        let sees = |to: Position| -> Vec<Option<RobotSet>> {
             at.iter().map(|from| ground.is_free(*from, to).then(|| between_but(places, robot, *from, to))).collect()
         };
         let reach = 2.0 * places.get(robot).map_or(separation, |own| own.radius);
         let entry = entry(ground, places, robot, set_point, reach);
-        let (sees_end, sees_entry) = (sees(set_point), sees(entry));
+        let inwards = between_but(places, robot, entry, set_point);
+        let sees_end = sees(set_point);
+        let sees_entry = sees(entry).into_iter().map(|between| between.map(|between| between.with(inwards))).collect();
         let mut route =
-            Self { set_point, corners: corners.clone(), sees_end, entry, sees_entry, alone: Rest::default() };
+            Self { set_point, corners: corners.clone(), sees_end, entry, inwards, sees_entry, alone: Rest::default() };
         let mut rest = Rest { left: vec![0.0; at.len()], next: vec![Next::End; at.len()], ..Rest::default() };
         route.walk_back(RobotSet::default(), &mut rest);
         route.alone = rest;
@@ -194,7 +197,7 @@ impl Route {
             return alone;
         }
         let mut best: Option<Path> = None;
-        if ground.is_free(from, self.entry) && is_clear(from, self.entry) {
+        if !self.inwards.meets(&standing) && ground.is_free(from, self.entry) && is_clear(from, self.entry) {
             let mut through = Path::straight(from, self.entry);
             through.push(self.set_point);
             through.length += (self.set_point - self.entry).norm();

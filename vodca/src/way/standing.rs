@@ -12,6 +12,9 @@ use crate::controller::View;
 use crate::layout::Layout;
 use crate::params::Params;
 
+/// By how much robots that touch may seem to overlap, m.
+const ROUNDING: f64 = 1e-6;
+
 /// What stands, seen by one robot in one tick.
 #[derive(Clone, Debug)]
 pub struct Standing {
@@ -47,7 +50,11 @@ impl Standing {
             if neighbour.lost || !neighbour.present.is_some_and(|(_, at)| covers(at)) {
                 continue;
             }
-            self.closed.push(Closed { centre: neighbour.set_point, radius: owed(layout.robot_extra[other]) });
+            let radius = owed(layout.robot_extra[other]);
+            if (view.position - neighbour.set_point).norm() < radius - ROUNDING {
+                continue; // Not in its place yet, as the walker is: nobody walks round what it is in.
+            }
+            self.closed.push(Closed { centre: neighbour.set_point, radius });
             if view.neighbours.len() > MOST_STANDING {
                 continue;
             }

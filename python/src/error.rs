@@ -1,0 +1,31 @@
+//! The product's errors as Python exceptions: the same sentences as the command line's.
+
+use pyo3::create_exception;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+create_exception!(
+    vodca,
+    Error,
+    PyValueError,
+    "What was asked for cannot be done. The message names the place and the value, and says what is allowed."
+);
+
+/// `error` and what caused it, as an exception.
+pub(crate) fn refused(error: impl std::error::Error) -> PyErr {
+    let mut text = error.to_string();
+    let mut cause = error.source();
+    while let Some(error) = cause {
+        let message = error.to_string();
+        if !text.contains(&message) {
+            text += &format!(": {message}");
+        }
+        cause = error.source();
+    }
+    Error::new_err(text)
+}
+
+/// An exception with this message.
+pub(crate) fn wrong(message: impl Into<String>) -> PyErr {
+    Error::new_err(message.into())
+}
