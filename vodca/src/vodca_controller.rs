@@ -291,9 +291,9 @@ impl Controller for VodcaController {
     }
 
     fn lay_out(&mut self, layout: &Arc<Layout>) {
-        let hazards = layout.set_points.len() + layout.obstacles.len();
+        let hazards = layout.set_points.len() + layout.obstacles.solids();
         self.rests = rests(layout, self.robot);
-        self.standing = Standing::with_capacity(hazards);
+        self.standing = Standing::of(layout);
         self.rows.reserve(2 * hazards);
         self.cell.rows.reserve(hazards);
         self.layout = layout.clone();
