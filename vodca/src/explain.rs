@@ -9,7 +9,7 @@ use crate::controller::{Neighbour, View};
 use crate::layout::Layout;
 use crate::mpc::problem::Row;
 use crate::params::{ControllerKind, Params};
-use crate::step::Step;
+use crate::step::{Status, Step};
 use crate::vodca_controller::hazards;
 use crate::way::Standing;
 use crate::way::right_of_way::regard_others;
@@ -71,7 +71,7 @@ impl Explainer {
             present: Some((*tick, step.position)),
             set_point: last.plan.set_point,
             toward: last.plan.toward,
-            lost: !step.status.took_part(),
+            lost: last.status == Status::Lost,
         };
         let neighbours: Vec<Neighbour> = now.iter().zip(before).map(heard).collect();
         let Step { horizon, position, .. } = now[robot];

@@ -53,6 +53,17 @@ fn both_profiles_pass() {
 }
 
 #[test]
+fn a_robot_that_is_called_lost_and_moves_is_found() {
+    let run = recorded(Params::safe());
+    for status in ["late", "lost"] {
+        let findings = run.changed(1 + 12 * 5 + 3, 9, |_| status.into());
+        let found = findings.iter().find(|finding| finding.what == format!("what a robot did that was {status}"));
+        let place = found.map(|finding| (finding.place.tick, finding.place.robot));
+        assert_eq!(place, Some((Some(12), Some(3))), "{findings:?}");
+    }
+}
+
+#[test]
 fn a_changed_byte_is_found_in_every_column() {
     let run = recorded(Params::safe());
     let (robots, tick, robot) = (5, 12, 3);
