@@ -159,7 +159,7 @@ impl Controller {
         if robot >= robots {
             return Err(wrong(format!("robot = {robot} is not allowed; allowed: 0..={}", robots - 1)));
         }
-        let layout = Arc::new(Layout::of(&scenario, params.model.min_separation));
+        let layout = Arc::new(Layout::of(&scenario, &params.model));
         let controller: Box<dyn OneRobot + Sync> = match params.controller.kind {
             ControllerKind::Vodca => Box::new(VodcaController::new(robot, &params, &layout)),
             ControllerKind::Orca => Box::new(OrcaController::new(robot, &params, &layout, scenario.seed)),

@@ -75,6 +75,7 @@ fn play(setup: Setup, Source { name, mut chosen }: Source) -> PyResult<Run> {
         seed: scenario.seed,
         exchange: "none".into(),
         real_time: false,
+        chaos: None,
         command: vec!["vodca.run".into(), scenario.name.clone()],
         versions: Versions::here(),
         machine: Machine::here(),
@@ -248,13 +249,13 @@ impl Run {
 
     #[classattr]
     #[pyo3(name = "LEVELS")]
-    fn level_words() -> [&'static str; 5] {
-        Level::ALL.map(Level::word)
+    fn level_words() -> Vec<&'static str> {
+        Level::ALL.into_iter().map(Level::word).collect()
     }
 
     #[classattr]
     #[pyo3(name = "STATUSES")]
-    fn status_words() -> [&'static str; 5] {
-        Status::ALL.map(Status::word)
+    fn status_words() -> Vec<&'static str> {
+        Status::ALL.into_iter().map(Status::word).collect()
     }
 }
