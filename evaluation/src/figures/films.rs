@@ -39,7 +39,7 @@ pub(super) const FILMS: [Film; 4] = [
     Film {
         file: "film_ring.svg",
         scenario: "tight_ring:32:3",
-        title: "Thirty-two robots on a tight ring, each to the opposite place",
+        title: "Thirty-two robots, each to the opposite place",
         look: Look { scale: 20.0, speed: 3.0, every: 2, plans: false },
     },
 ];
