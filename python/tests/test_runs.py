@@ -95,6 +95,14 @@ def test_a_scenario_is_made_of_python_objects():
     assert len(file) == 14 and file.starts.shape == (14, 2)
 
 
+def test_walls_are_kept_away_from_and_read_back():
+    wall = {"wall": [[5, -1], [5, 1]], "thickness": 0.2}
+    layout = vodca.Scenario([vodca.Robot((0, 0), (10, 0)), vodca.Robot((10, 3), (0, 3))], [vodca.Obstacle((5, -4)), wall])
+    run = vodca.run(layout)
+    assert run.summary["success"] and run.summary["path_ratio"] > 1.01
+    assert vodca.Scenario.from_toml(layout.to_toml()) == layout
+
+
 def test_a_scenario_is_found_by_file_name_and_number(tmp_path):
     layout = vodca.Scenario.find("four_gate")
     (tmp_path / "mine.toml").write_text(layout.to_toml())
