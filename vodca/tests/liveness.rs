@@ -63,8 +63,8 @@ fn a_set_point_is_entered_from_a_side_on_which_nobody_stands() {
 
 #[test]
 fn robots_wedged_between_each_other_come_apart() {
-    assert!(arrives("permute:16:5", Some(20), 5, &[]));
-    let without = arrives("permute:16:5", Some(20), 5, &["vodca.back_off=1"]);
+    assert!(arrives("permute:16:2", Some(20), 1, &[]));
+    let without = arrives("permute:16:2", Some(20), 1, &["vodca.back_off=1"]);
     assert!(!without, "shows nothing any more: take another one");
 }
 

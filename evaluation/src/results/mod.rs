@@ -4,6 +4,7 @@
 
 mod csv;
 mod document;
+mod faults;
 mod medians;
 mod paper;
 mod parts;
@@ -76,6 +77,7 @@ pub fn tables(root: &Path) -> Result<Vec<NamedTable>, ResultsError> {
     tables.push(("policies".into(), policies::table(root)?.markdown()));
     tables.extend(paper::tables(root)?);
     tables.extend(training::tables(root)?);
+    tables.push(faults::table(root)?);
     tables.push(("latency".into(), latency(root)?));
     Ok(tables)
 }

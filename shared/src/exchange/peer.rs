@@ -11,9 +11,11 @@ pub(super) struct Peer {
     reporter: Reporter,
     sender: Sender<Plan>,
     receiver: Receiver<Plan>,
-    /// Plans of the tick that is being planned, by robot: a quicker neighbour's plan is read together
-    /// with the plans of the tick before and must not be heard until the next tick.
-    early: Vec<Option<Plan>>,
+    /// The newest plans of the tick that is being planned and of later ones, by robot and parity of the tick: a
+    /// quicker neighbour's plan is read together with the plans of the tick before and must not be heard until the
+    /// next tick. Who was late reads even those of ticks that went on without it; what is announced by then is the
+    /// tick after the last but one of them.
+    early: Vec<[Option<Plan>; 2]>,
     /// Which life of every robot counts.
     lives: [u32; MAX_ROBOTS],
 }
@@ -26,7 +28,7 @@ impl Peer {
         receiver: Receiver<Plan>,
         robots: usize,
     ) -> Self {
-        Self { clock, reporter, sender, receiver, early: vec![None; robots], lives: [0; MAX_ROBOTS] }
+        Self { clock, reporter, sender, receiver, early: vec![[None; 2]; robots], lives: [0; MAX_ROBOTS] }
     }
 }
 
@@ -44,7 +46,7 @@ impl Exchange for Peer {
             self.receiver.receive()?;
         }
         if let Some(Order::Episode { .. }) = order {
-            self.early.fill(None);
+            self.early.fill([None; 2]);
         }
         let Some(Order::Tick { tick, .. }) = order else { return Ok(order) };
         let mut tell = |plan: &Plan| {
@@ -54,7 +56,7 @@ impl Exchange for Peer {
                 hear(News::Plan { sender, tick: plan.tick, plan: &prediction });
             }
         };
-        for early in &mut self.early {
+        for early in self.early.iter_mut().flatten() {
             if let Some(plan) = early.take_if(|plan| plan.tick < tick)
                 && plan.tick + 1 == tick
             {
@@ -68,8 +70,11 @@ impl Exchange for Peer {
             }
             if plan.tick + 1 == tick {
                 tell(&plan);
-            } else if plan.tick == tick {
-                self.early[robot] = Some(*plan);
+            } else if plan.tick >= tick {
+                let early = &mut self.early[robot][(plan.tick % 2) as usize];
+                if early.is_none_or(|known| known.tick < plan.tick) {
+                    *early = Some(*plan);
+                }
             }
         }
         self.clock.tell_absent(hear);

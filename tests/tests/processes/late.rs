@@ -6,20 +6,16 @@ use tests::{ENDLESS, Robots, Run, signal, wait_until};
 #[test]
 fn messages_that_come_late_twice_or_never_cost_ticks_and_no_more() {
     let faults = "delay:0.02,drop:0.02,duplicate:0.1,stop:0.005x4,seed:5";
-    let arguments = |exchange: &str| format!("14 --horizon random:4 --chaos {faults} --exchange {exchange}");
-    let mut bytes = Vec::new();
-    for _ in 0..2 {
-        let finished = checked(&arguments("relay"));
-        assert_eq!(finished.status.code(), Some(0), "{finished:?}");
-        assert!(finished.summary["statuses"]["late"].as_u64() > Some(20), "{}", finished.summary["statuses"]);
-        assert_eq!(finished.summary["statuses"]["lost"], 0);
-        bytes.push(finished.trajectory);
+    for exchange in ["relay", "peer"] {
+        let arguments = format!("14 --horizon random:4 --chaos {faults} --exchange {exchange}");
+        let runs = [(); 2].map(|()| checked(&arguments));
+        for finished in &runs {
+            assert_eq!(finished.status.code(), Some(0), "{finished:?}");
+            assert!(finished.summary["statuses"]["late"].as_u64() > Some(20), "{}", finished.summary["statuses"]);
+            assert_eq!(finished.summary["statuses"]["lost"], 0);
+        }
+        assert!(runs[0].trajectory == runs[1].trajectory, "{exchange}: the same faults give the same bytes");
     }
-    assert!(bytes[0] == bytes[1], "the same faults give the same bytes");
-    // From robot to robot a full queue may lose a plan on a busy machine: its reader stands for a tick.
-    let finished = Run::start(Robots::Real, &arguments("peer")).finish();
-    assert_eq!(finished.status.code(), Some(0), "{finished:?}");
-    assert_eq!(finished.summary["pairs_below_min_separation"], 0);
 }
 
 #[test]
