@@ -69,11 +69,16 @@ def test_an_exception_in_a_function_of_horizons_is_what_the_caller_gets():
 
 
 def test_ctrl_c_ends_a_run():
-    code = "import vodca; print('here', flush=True)\nwhile True: vodca.run('ring:60', max_ticks=100000, episode_arrival_tolerance=1e-9)"
-    child = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-    assert child.stdout.readline() == "here\n"
-    child.send_signal(signal.SIGINT)
-    _, said = child.communicate(timeout=120)
+    # A parent that ignores the signal, as `nohup ... &` does, hands that down.
+    caught = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)\n"
+    code = caught + "import vodca; print('here', flush=True)\nwhile True: vodca.run('ring:60', max_ticks=100000, episode_arrival_tolerance=1e-9)"
+    with subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as child:
+        assert child.stdout.readline() == "here\n"
+        child.send_signal(signal.SIGINT)
+        try:
+            _, said = child.communicate(timeout=120)
+        finally:
+            child.kill()
     assert "KeyboardInterrupt" in said and child.returncode != 0
 
 
