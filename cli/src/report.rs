@@ -60,9 +60,17 @@ fn figures(summary: &Summary, folder: &Path) -> String {
         End::PeerLost => "no: a robot's process was lost".into(),
     };
     let bound = summary.lower_bound.map_or("- (for up to 16 robots)".into(), |LowerBound { path, time }| {
-        let times = |time_s: f64| format!(", {:.3} of it here", time_s / time);
-        let of_time = run.completion_time.map_or(String::new(), times);
-        format!("{path:.2} m, {:.3} of it here; {time:.1} s{of_time}", run.path_cost / path)
+        match run.completion_time {
+            Some(time_s) => {
+                format!(
+                    "{path:.2} m, {:.3} of it here; {time:.1} s, {:.3} of it here",
+                    run.path_cost / path,
+                    time_s / time
+                )
+            }
+            // A part of the way says nothing about the whole.
+            None => format!("{path:.2} m; {time:.1} s"),
+        }
     });
     let lines = [
         ("success", ended),
@@ -195,6 +203,16 @@ mod tests {
         assert!(lines[0].starts_with("robot  name  arrived  path m  straight m  activations"), "{text}");
         assert_eq!(lines[0].find("path m").map(|at| at + 6), lines[1].find("0.91").map(|at| at + 4), "{text}");
         assert!(lines[1].ends_with("0.4         0.4"), "{text}");
+    }
+
+    #[test]
+    fn only_a_whole_way_is_held_against_the_least_one() {
+        let mut summary = summary();
+        summary.lower_bound = Some(LowerBound { path: 10.0, time: 4.0 });
+        assert!(report(&summary, Path::new("x")).contains("at the least    10.00 m; 4.0 s\n"));
+        (summary.run.completion_time, summary.run.path_cost) = (Some(5.0), 12.0);
+        let text = report(&summary, Path::new("x"));
+        assert!(text.contains("10.00 m, 1.200 of it here; 4.0 s, 1.250 of it here"), "{text}");
     }
 
     #[test]
