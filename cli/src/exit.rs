@@ -1,6 +1,7 @@
 //! How a command ends, and the exit code that says so.
 
 use crate::stdout::PrintError;
+use evaluation::sentence::sentence;
 use std::error::Error;
 use std::io::Write as _;
 use std::process::ExitCode;
@@ -60,39 +61,6 @@ pub fn report(ending: Ending) -> ExitCode {
         Err(Failure::Usage(error)) => (2, error),
         Err(Failure::PeerLost(error)) => (3, error),
     };
-    let _ = writeln!(std::io::stderr(), "error: {}", chain(error.as_ref())); // nobody reads it: the code says it
+    let _ = writeln!(std::io::stderr(), "error: {}", sentence(error.as_ref())); // nobody reads it: the code says it
     ExitCode::from(code)
-}
-
-/// The message of `error` and of what caused it; a cause that the message already contains is left out.
-fn chain(error: &dyn Error) -> String {
-    let mut text = error.to_string();
-    let mut cause = error.source();
-    while let Some(error) = cause {
-        let message = error.to_string();
-        if !text.contains(&message) {
-            text += &format!(": {message}");
-        }
-        cause = error.source();
-    }
-    text
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[derive(Debug, thiserror::Error)]
-    #[error("outer")]
-    struct Outer(#[source] std::io::Error);
-
-    #[derive(Debug, thiserror::Error)]
-    #[error("outer: {0}")]
-    struct Repeating(#[source] std::io::Error);
-
-    #[test]
-    fn causes_are_told_once() {
-        assert_eq!(chain(&Outer(std::io::Error::other("inner"))), "outer: inner");
-        assert_eq!(chain(&Repeating(std::io::Error::other("inner"))), "outer: inner");
-    }
 }

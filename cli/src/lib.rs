@@ -7,3 +7,4 @@ pub mod needs;
 pub mod progress;
 pub mod report;
 pub mod stdout;
+mod whole_file;

@@ -219,45 +219,72 @@ pub fn table(kills: &[Kill]) -> TextTable {
     table
 }
 
-/// The sums over `kills`: without and with a restart.
-pub fn sums(kills: &[Kill]) -> TextTable {
+/// What one kill cost the others.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Cost {
+    /// Whether the robot was started anew.
+    pub respawn: bool,
+    /// Robots that were lost besides.
+    pub other_deaths: u64,
+    /// Pairs that came below r_min.
+    pub pairs_below: u64,
+    /// The smallest separation, m.
+    pub min_separation: Option<f64>,
+    /// Robots that live and might have arrived, but did not.
+    pub missing: u64,
+    /// Robots whose set-point the body closes.
+    pub shut_off: u64,
+    /// Files that were left.
+    pub left: u64,
+    /// From the kill until the first new plan of the robot was there, ms.
+    pub rejoin_ms: Option<f64>,
+}
+
+impl From<&Kill> for Cost {
+    fn from(kill: &Kill) -> Self {
+        Self {
+            respawn: kill.respawn,
+            other_deaths: kill.other_deaths as u64,
+            pairs_below: kill.summary.pairs_below_min_separation,
+            min_separation: kill.summary.min_separation,
+            missing: kill.missing() as u64,
+            shut_off: kill.summary.shut_off,
+            left: kill.left as u64,
+            rejoin_ms: kill.rejoin_ms,
+        }
+    }
+}
+
+/// The sums over kills, without and with a restart.
+pub fn sums(costs: &[Cost]) -> TextTable {
     let mut table = TextTable::new(&[
-        "respawn",
+        "restart",
         "runs",
-        "good",
         "other deaths",
         "pairs below",
         "least m",
-        "missing",
-        "shut off",
-        "left",
-        "rejoin p50 ms",
-        "p99",
-        "max",
+        "living robots late",
+        "set-points closed by the body",
+        "files left",
+        "rejoin p50, most (ms)",
     ]);
-    for respawn in [false, true] {
-        let chosen: Vec<&Kill> = kills.iter().filter(|kill| kill.respawn == respawn).collect();
-        let sum = |of: fn(&Kill) -> u64| chosen.iter().map(|kill| of(kill)).sum::<u64>().to_string();
-        let least = chosen.iter().filter_map(|kill| kill.summary.min_separation).fold(f64::INFINITY, f64::min);
-        let mut rejoins: Vec<f64> = chosen.iter().filter_map(|kill| kill.rejoin_ms).collect();
+    for (respawn, title) in [(false, "none"), (true, "once")] {
+        let chosen: Vec<&Cost> = costs.iter().filter(|cost| cost.respawn == respawn).collect();
+        let sum = |of: fn(&Cost) -> u64| chosen.iter().map(|cost| of(cost)).sum::<u64>().to_string();
+        let told = |value: Option<f64>, digits: usize| value.map_or("-".into(), |value| format!("{value:.digits$}"));
+        let mut rejoins: Vec<f64> = chosen.iter().filter_map(|cost| cost.rejoin_ms).collect();
         rejoins.sort_by(f64::total_cmp);
-        let rank = |share: f64| {
-            let at = ((rejoins.len() as f64 * share).ceil() as usize).clamp(1, rejoins.len().max(1)) - 1;
-            rejoins.get(at).map_or("-".into(), |ms| format!("{ms:.1}"))
-        };
+        let [middle, most] = [rejoins.get(rejoins.len() / 2), rejoins.last()].map(|time| told(time.copied(), 0));
         table.row([
-            if respawn { "1" } else { "0" }.to_string(),
+            title.into(),
             chosen.len().to_string(),
-            sum(|kill| u64::from(kill.is_good())),
-            sum(|kill| kill.other_deaths as u64),
-            sum(|kill| kill.summary.pairs_below_min_separation),
-            format!("{least:.6}"),
-            sum(|kill| kill.missing() as u64),
-            sum(|kill| kill.summary.shut_off),
-            sum(|kill| kill.left as u64),
-            rank(0.5),
-            rank(0.99),
-            rank(1.0),
+            sum(|cost| cost.other_deaths),
+            sum(|cost| cost.pairs_below),
+            told(chosen.iter().filter_map(|cost| cost.min_separation).reduce(f64::min), 6),
+            sum(|cost| cost.missing),
+            sum(|cost| cost.shut_off),
+            sum(|cost| cost.left),
+            format!("{middle}, {most}"),
         ]);
     }
     table

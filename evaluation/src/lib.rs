@@ -16,5 +16,6 @@ mod roll;
 #[cfg(test)]
 pub(crate) mod samples;
 pub mod search;
+pub mod sentence;
 pub mod text_table;
 pub mod verify;

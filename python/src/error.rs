@@ -1,5 +1,6 @@
 //! The product's errors as Python exceptions: the same sentences as the command line's.
 
+use evaluation::sentence::sentence;
 use pyo3::create_exception;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -13,16 +14,7 @@ create_exception!(
 
 /// `error` and what caused it, as an exception.
 pub(crate) fn refused(error: impl std::error::Error) -> PyErr {
-    let mut text = error.to_string();
-    let mut cause = error.source();
-    while let Some(error) = cause {
-        let message = error.to_string();
-        if !text.contains(&message) {
-            text += &format!(": {message}");
-        }
-        cause = error.source();
-    }
-    Error::new_err(text)
+    Error::new_err(sentence(&error))
 }
 
 /// An exception with this message.

@@ -2,8 +2,8 @@
 
 use crate::exit::{Ending, Failure, Outcome};
 use crate::progress::Progress;
-use crate::stdout;
-use evaluation::faults::{kill, sums, table};
+use crate::{stdout, whole_file};
+use evaluation::faults::{Cost, kill, sums, table};
 use shared::stop::StopFlag;
 use std::path::PathBuf;
 
@@ -28,29 +28,44 @@ pub struct Args {
     out: Option<PathBuf>,
 }
 
+/// The rows cannot be written.
+#[derive(Debug, thiserror::Error)]
+#[error("cannot write {}: {source}; name another file with --out", path.display())]
+struct WriteError {
+    path: PathBuf,
+    source: std::io::Error,
+}
+
 /// Kills and counts.
 pub fn run(args: &Args) -> Ending {
     let stop = StopFlag::install().map_err(Failure::broken)?;
     let progress = Progress::of_work(args.kills as usize);
-    let mut kills = Vec::new();
-    for number in args.first..args.first + args.kills {
+    let (mut kills, mut broken) = (Vec::new(), None);
+    for number in args.first..args.first.saturating_add(args.kills) {
         if stop.is_set() {
             break;
         }
-        kills.push(kill(number, &stop).map_err(Failure::broken)?);
+        match kill(number, &stop) {
+            Ok(kill) => kills.push(kill),
+            Err(error) => {
+                broken = Some(Failure::broken(error));
+                break;
+            }
+        }
         progress.advance();
     }
     progress.finish();
     if let Some(out) = &args.out {
-        if let Some(folder) = out.parent() {
-            std::fs::create_dir_all(folder).map_err(Failure::broken)?;
-        }
-        std::fs::write(out, table(&kills).csv()).map_err(Failure::broken)?;
+        whole_file::write(out, &table(&kills).csv())
+            .map_err(|source| Failure::broken(WriteError { path: out.clone(), source }))?;
     }
     let bad: Vec<_> = kills.iter().filter(|kill| !kill.is_good()).cloned().collect();
-    stdout::text(sums(&kills).aligned())?;
+    stdout::text(sums(&kills.iter().map(Cost::from).collect::<Vec<_>>()).aligned())?;
     if !bad.is_empty() {
         stdout::text(format!("\nnot good:\n{}", table(&bad).aligned()))?;
+    }
+    if let Some(broken) = broken {
+        return Err(broken);
     }
     Ok(if bad.is_empty() { Outcome::Done } else { Outcome::Failed })
 }

@@ -1,7 +1,7 @@
 //! `scenario`: lists, checks, draws and generates scenarios.
 
 use crate::exit::{Ending, Failure, Outcome};
-use crate::stdout;
+use crate::{stdout, whole_file};
 use clap::Subcommand;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -124,7 +124,7 @@ fn show(spec: &str, out: Option<PathBuf>, profile: Profile, set: &[String]) -> R
     let text = picture(&scenario, params.model.min_separation);
     match out {
         None => stdout::text(text)?,
-        Some(path) => std::fs::write(&path, text)
+        Some(path) => whole_file::write(&path, &text)
             .map_err(|source| Failure::broken(WriteError { path, source, next: "another file with -o" }))?,
     }
     set_up(Some(spec), None, profile, set).map(|_| ()).map_err(Failure::usage)
