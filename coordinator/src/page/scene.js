@@ -82,9 +82,9 @@ class Scene {
     const pen = this.pen;
     pen.beginPath();
     for (const ring of shape.rings) {
-      for (const [x, y] of ring) pen.lineTo(this.toX(x), this.toY(y));
-      pen.closePath();
       pen.moveTo(this.toX(ring[0][0]), this.toY(ring[0][1]));
+      for (const [x, y] of ring.slice(1)) pen.lineTo(this.toX(x), this.toY(y));
+      pen.closePath();
     }
     if (shape.radius === 0) return this.hatch("evenodd");
     pen.save();

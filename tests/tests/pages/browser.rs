@@ -30,6 +30,23 @@ fn a_report_plays_scrubs_and_follows() {
     check("report", page.to_str().unwrap());
 }
 
+/// Holes of a map's walls are rings within a ring: none is joined to the one before.
+#[test]
+fn every_ring_of_a_shape_is_drawn_by_itself() {
+    let drawn = "
+        const said = [], say = word => (...at) => { said.push(word + at.join()); };
+        const pen = { beginPath() {}, moveTo: say('M'), lineTo: say('L'), closePath: say('Z') };
+        const scene = { pen, toX: x => x, toY: y => y, hatch: say('hatch ') };
+        const rings = [[[0, 0], [9, 0], [9, 9]], [[1, 1], [2, 2], [2, 1]]];
+        Scene.prototype.drawShape.call(scene, { rings, radius: 0 });
+        console.log(said.join(' '));";
+    let script = format!("{}\n{drawn}", coordinator::page::SCENE_SCRIPTS.join("\n"));
+    let Ok(output) = Command::new("node").args(["-e", &script]).output() else {
+        return eprintln!("skipped: apt-get install nodejs");
+    };
+    assert_eq!(success(output).trim(), "M0,0 L9,0 L9,9 Z M1,1 L2,2 L2,1 Z hatch evenodd");
+}
+
 #[test]
 fn the_largest_usual_run_stays_below_a_megabyte() {
     let place = tempfile::tempdir().unwrap();
