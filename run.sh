@@ -33,10 +33,11 @@ train) build -p learner -p cli -p agent -p policy-server; exec "$target/release/
 esac
 build -p cli -p agent
 # The program itself says what else its arguments need: the policy server is the heaviest build of all.
+# Always built beside the two above: alone, cargo would compile what they share anew, with other features.
 for need in $("$target/release/vodca" needs -- "$@"); do
     case $need in
     foxglove) build -p cli -p agent --features cli/foxglove ;;
-    *) build -p "$need" ;;
+    *) build -p cli -p agent -p "$need" ;;
     esac
 done
 exec "$target/release/vodca" "$@"

@@ -1,4 +1,4 @@
-//! What a command needs beside the program itself: `run.sh` builds it before the command runs.
+//! What a command needs beside the program and the robots: `run.sh` builds it before the command runs.
 
 use crate::cli::{Cli, Command};
 use clap::Parser;
@@ -8,8 +8,6 @@ use evaluation::compare::HorizonPart;
 /// Something that is built only for the commands that need it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Need {
-    /// The robots' program.
-    Agent,
     /// The policy server, the heaviest build of all.
     PolicyServer,
     /// The views of Foxglove, a feature of the program.
@@ -20,7 +18,6 @@ impl Need {
     /// The word that `run.sh` reads.
     pub fn word(self) -> &'static str {
         match self {
-            Self::Agent => "agent",
             Self::PolicyServer => "policy-server",
             Self::Foxglove => "foxglove",
         }
@@ -39,16 +36,12 @@ fn of(command: &Command) -> Vec<Need> {
     match command {
         Command::Run(args) => {
             let [policy, foxglove] = [args.policy.is_some(), args.foxglove.is_some()];
-            let more = [asked(policy, Need::PolicyServer), asked(foxglove, Need::Foxglove)];
-            std::iter::once(Need::Agent).chain(more.into_iter().flatten()).collect()
+            [asked(policy, Need::PolicyServer), asked(foxglove, Need::Foxglove)].into_iter().flatten().collect()
         }
-        Command::Rollout(args) => {
-            std::iter::once(Need::Agent).chain(asked(args.policy.is_some(), Need::PolicyServer)).collect()
-        }
-        Command::Agent(_) | Command::Faults(_) => vec![Need::Agent],
+        Command::Rollout(args) => asked(args.policy.is_some(), Need::PolicyServer).into_iter().collect(),
         Command::Bench(args) => {
             let server = matches!(args.part, Part::Policy | Part::All);
-            std::iter::once(Need::Agent).chain(asked(server, Need::PolicyServer)).collect()
+            asked(server, Need::PolicyServer).into_iter().collect()
         }
         Command::Compare(args) => {
             let horizons = || args.controllers.iter().flat_map(|specs| &specs.0).flat_map(|spec| &spec.horizons);
@@ -73,16 +66,16 @@ mod tests {
     #[test]
     fn a_command_needs_what_its_arguments_name() {
         for (line, expected) in [
-            ("run 14", "agent"),
-            ("run 14 --policy policies/exchange_14", "agent policy-server"),
-            ("run 14 --policy=x --foxglove", "agent policy-server foxglove"),
-            ("rollout --scenario ex14_d --out x", "agent"),
+            ("run 14", ""),
+            ("run 14 --policy policies/exchange_14", "policy-server"),
+            ("run 14 --policy=x --foxglove", "policy-server foxglove"),
+            ("rollout --scenario ex14_d --out x", ""),
             ("compare ex14_d --controllers safe:random orca", ""),
             ("compare ex14_d --controllers paper:policy:two", "policy-server"),
             ("evaluate --policy x --scenario ex14_d", "policy-server"),
             ("figures", "policy-server"),
-            ("bench exchange", "agent"),
-            ("bench", "agent policy-server"),
+            ("bench exchange", ""),
+            ("bench", "policy-server"),
             ("verify runs/x", ""),
         ] {
             assert_eq!(words(line), expected, "{line}");
@@ -92,7 +85,7 @@ mod tests {
     #[test]
     fn words_inside_an_argument_and_mistakes_need_nothing_more() {
         let out = ["run", "14", "--out", "a --policy b"].map(String::from);
-        assert_eq!(needs(&out), [Need::Agent]);
+        assert_eq!(needs(&out), []);
         assert_eq!((words("run"), words("nonsense --policy x"), words("run 14 --help")), Default::default());
     }
 }
