@@ -49,7 +49,7 @@ pub trait Drive {
     /// Begins anew with tick `tick`: it did not take part in the one before, and its body stands at `at`, m.
     fn restart(&mut self, tick: u64, at: Position);
 
-    /// From the next tick on `layout` holds: lost robots have become obstacles, or are gone.
+    /// From the next tick on `layout` holds: set-points have changed, or lost robots have become obstacles, or are gone.
     fn lay_out(&mut self, _layout: &Arc<Layout>) {}
 }
 
@@ -131,13 +131,20 @@ impl<D: Drive> Episode<D> {
         })
     }
 
-    /// Takes in what is told before tick `tick`: who stood during the tick before.
-    fn begin(&mut self, tick: u64, absent: &[(usize, State, Position)]) {
+    /// Takes in what is told before tick `tick`: who stood during the tick before, and where everybody goes from now on (none
+    /// told: where the scenario says).
+    fn begin(&mut self, tick: u64, absent: &[(usize, State, Position)], set_points: &[Position]) {
         if absent.iter().any(|(robot, ..)| *robot == self.robot) {
             self.hearing.restart(tick); // before it is told of anybody, as what is told counts
         }
+        let known = self.setup.scenario.robots.iter_mut().map(|robot| &mut robot.set_point);
+        let mut changed = false;
+        for (known, &told) in known.zip(set_points).filter(|(known, told)| **known != **told) {
+            *known = told;
+            changed = true;
+        }
         let lost = |robot| absent.iter().find(|told| told.0 == robot && told.1 == State::Lost).map(|told| told.2);
-        if self.lost.iter().enumerate().any(|(robot, known)| *known != lost(robot)) {
+        if changed || self.lost.iter().enumerate().any(|(robot, known)| *known != lost(robot)) {
             self.lost.iter_mut().enumerate().for_each(|(robot, known)| *known = lost(robot));
             let Setup { scenario, params, .. } = &self.setup;
             self.drive.lay_out(&Arc::new(Layout::with_lost(scenario, &params.model, &self.lost)));
@@ -164,12 +171,15 @@ fn serve<D: Drive>(
     // Looks rather than time: a machine that was stopped as a whole goes on as if nothing had been.
     let (mut quiet, mut last, robot) = (Duration::ZERO, None, author.robot);
     let mut absent = Vec::with_capacity(setup.team.robots);
+    let mut set_points = Vec::with_capacity(setup.team.robots);
     let (mut held, started) = (None, Instant::now());
     while !stop.is_set() {
         absent.clear();
+        set_points.clear();
         let mut hear = |news: News<'_>| match news {
             News::Plan { sender, tick, plan } => now.hearing.hear(tick, sender, plan),
             News::Absent { robot, state, at } => absent.push((robot, state, at)),
+            News::SetPoints(all) => set_points.extend_from_slice(all),
         };
         let order = exchange.next_order(LOOK_AROUND, &mut hear)?;
         if let Some(late) = order.and_then(|_| held.take()) {
@@ -190,8 +200,8 @@ fn serve<D: Drive>(
                 exchange.publish(Report::presence(author, kind::MET, now.drive.measured()))?;
             }
             Some(Order::Tick { tick, horizon, announced, woken }) => {
-                if !absent.is_empty() || now.lost.iter().any(Option::is_some) {
-                    now.begin(tick, &absent);
+                if !absent.is_empty() || !set_points.is_empty() || now.lost.iter().any(Option::is_some) {
+                    now.begin(tick, &absent, &set_points);
                 }
                 let read = os::now_ns();
                 let horizon = horizon.ok_or(RunError::NoHorizon { robot, tick })?;

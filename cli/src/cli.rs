@@ -1,8 +1,8 @@
 //! The command line: one subcommand per file of `commands/`.
 
 use crate::commands::{
-    agent, bench, compare, evaluate, faults, figures, former, golden, params, replay, report, results, rollout, run,
-    scenario, search, verify,
+    agent, bench, compare, evaluate, faults, figures, former, go, golden, params, replay, report, results, rollout,
+    run, scenario, search, verify,
 };
 use crate::exit::{Ending, Failure, Outcome};
 use crate::needs::needs;
@@ -35,6 +35,8 @@ pub(crate) enum Command {
     Run(run::Args),
     /// Drive one robot of a run that is under way: one that was lost, or in a run `--by-hand`
     Agent(agent::Args),
+    /// Send a robot of a run that is under way somewhere else
+    Go(go::Args),
     /// What became `compare`
     #[command(hide = true)]
     Sweep(former::Sweep),
@@ -84,6 +86,7 @@ impl Cli {
         match self.command {
             Command::Run(args) => run::run(args),
             Command::Agent(args) => agent::run(&args),
+            Command::Go(args) => go::run(&args),
             Command::Sweep(args) => former::sweep(args),
             Command::Compare(args) => compare::run(args),
             Command::Evaluate(args) => evaluate::run(args),

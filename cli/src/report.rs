@@ -8,6 +8,7 @@ use evaluation::text_table::TextTable;
 use std::fmt::Write as _;
 use std::path::Path;
 use vodca::membership::State;
+use vodca::metrics::TaskSummary;
 use vodca::way::LowerBound;
 
 /// The table and the summary of a run recorded in `folder`.
@@ -53,25 +54,29 @@ fn figures(summary: &Summary, folder: &Path) -> String {
             "no: everybody arrived, but not without collision".into()
         }
         End::Arrived => format!("no: {} of {} arrived{}", arrived(summary), run.robots.len(), who_was_lost(summary)),
+        End::OutOfTicks if run.success => "yes: all ticks were used up, and nobody touched anything".into(),
         End::OutOfTicks => {
             format!("no: {} of {} arrived in time{}", arrived(summary), run.robots.len(), who_was_lost(summary))
         }
         End::Interrupted => format!("no: asked to stop when {} of {} had arrived", arrived(summary), run.robots.len()),
         End::PeerLost => "no: a robot's process was lost".into(),
     };
-    let bound = summary.lower_bound.map_or("- (for up to 16 robots)".into(), |LowerBound { path, time }| {
-        match run.completion_time {
-            Some(time_s) => {
-                format!(
-                    "{path:.2} m, {:.3} of it here; {time:.1} s, {:.3} of it here",
-                    run.path_cost / path,
-                    time_s / time
-                )
+    let bound = summary.lower_bound.map_or(
+        "- (for up to 16 robots whose set-points stay)".into(),
+        |LowerBound { path, time }| {
+            match run.completion_time {
+                Some(time_s) => {
+                    format!(
+                        "{path:.2} m, {:.3} of it here; {time:.1} s, {:.3} of it here",
+                        run.path_cost / path,
+                        time_s / time
+                    )
+                }
+                // A part of the way says nothing about the whole.
+                None => format!("{path:.2} m; {time:.1} s"),
             }
-            // A part of the way says nothing about the whole.
-            None => format!("{path:.2} m; {time:.1} s"),
-        }
-    });
+        },
+    );
     let lines = [
         ("success", ended),
         ("ticks", run.ticks.to_string()),
@@ -92,14 +97,27 @@ fn figures(summary: &Summary, folder: &Path) -> String {
         ("guarantee", summary.guarantee.clone()),
     ];
     let policy = summary.policy.as_ref().map(policy_lines).unwrap_or_default();
+    let tasks = run.tasks.as_ref().map(task_line);
     let last = [("folder", folder.display().to_string())];
-    lines.iter().chain(&absence_lines(summary)).chain(&time_lines(summary)).chain(&policy).chain(&last).fold(
-        String::new(),
-        |mut text, (name, value)| {
+    lines
+        .iter()
+        .chain(&tasks)
+        .chain(&absence_lines(summary))
+        .chain(&time_lines(summary))
+        .chain(&policy)
+        .chain(&last)
+        .fold(String::new(), |mut text, (name, value)| {
             let _ = writeln!(text, "{name:<16}{value}"); // writing to a String cannot fail
             text
-        },
-    )
+        })
+}
+
+fn task_line(tasks: &TaskSummary) -> (&'static str, String) {
+    let or_dash = |figure: Option<String>| figure.unwrap_or("-".into());
+    let per_minute = or_dash(tasks.per_minute.map(|rate| format!("{rate:.1}")));
+    let wait = or_dash(tasks.mean_wait.map(|wait| format!("{wait:.1} s")));
+    let path = or_dash(tasks.path_per_arrival.map(|path| format!("{path:.2} m")));
+    ("tasks", format!("{} arrivals, {per_minute} per minute, {path} each; next set-point after {wait}", tasks.arrivals))
 }
 
 fn time_lines(summary: &Summary) -> Vec<(&'static str, String)> {

@@ -25,6 +25,7 @@ use vodca::metrics::RunMetrics;
 use vodca::params::Params;
 use vodca::play::{Ending, Halt, Limits, Observer, Playable, Tick, Verdict, play};
 use vodca::scenario::{Scenario, ScenarioError};
+use vodca::tasks::Tasks;
 
 /// The usual [`Options::tick_deadline`]: a robot that hangs holds the others up no longer, or ends the run within 2 s.
 pub const TICK_DEADLINE: Duration = Duration::from_millis(1200);
@@ -73,6 +74,8 @@ pub struct Options {
     pub on_loss: OnLoss,
     /// How long a late robot may be silent before it is taken for dead and ended.
     pub lost_after: Duration,
+    /// Where robots go that have arrived; orders from outside are taken then, too. `None`: they stay.
+    pub tasks: Option<Tasks>,
     /// Faults on purpose.
     pub chaos: Chaos,
     /// How long robots may have to wait between two episodes.
@@ -98,6 +101,7 @@ impl Options {
             tick_deadline: TICK_DEADLINE,
             on_loss: OnLoss::Stop,
             lost_after: LOST_AFTER,
+            tasks: None,
             chaos: Chaos::default(),
             idle: Duration::ZERO,
             start_patience: Duration::from_secs(30),

@@ -5,6 +5,7 @@ use crate::members::Change;
 use crate::policy::PolicySummary;
 use crate::record::latency::{self, LatencyWriter};
 use crate::record::membership::{self, MembershipWriter};
+use crate::record::set_points::{self, SetPointsWriter};
 use crate::record::{About, RecordError, Recorder, RunFolder};
 use crate::run::RunTick;
 use crate::summary::{Absence, End, Summary, Timings};
@@ -13,7 +14,7 @@ use crate::tick_parts::TickTimes;
 use std::path::{Path, PathBuf};
 use vodca::metrics::RunMetrics;
 use vodca::params::Params;
-use vodca::play::{Observer, Verdict};
+use vodca::play::{Observer, Playable, Verdict};
 use vodca::scenario::Scenario;
 use vodca::step::Step;
 
@@ -26,6 +27,7 @@ pub struct Session {
     latency: LatencyWriter,
     timings: Timings,
     membership: MembershipWriter,
+    set_points: SetPointsWriter,
     changes: Vec<Change>,
 }
 
@@ -33,11 +35,13 @@ impl Session {
     /// Writes what is known before the first tick into `folder`.
     pub fn start(folder: RunFolder, scenario: &Scenario, params: &Params, about: About) -> Result<Self, RecordError> {
         let (latency, members) = (folder.file(latency::FILE), folder.file(membership::FILE));
+        let set_points = SetPointsWriter::new(folder.file(set_points::FILE));
         Ok(Self {
             recorder: Recorder::start(folder, scenario, params, &about)?,
             latency: LatencyWriter::create(latency, scenario.robots.len())?,
             timings: Timings::new(scenario.robots.len()),
             membership: MembershipWriter::new(members),
+            set_points,
             changes: Vec::new(),
             scenario: scenario.clone(),
             params: params.clone(),
@@ -88,6 +92,7 @@ impl Observer<ProcessTeam, RunHorizons> for Session {
             self.membership.write(changes)?; // before the tick that it explains
             self.changes = changes.to_vec();
         }
+        self.set_points.write(seen.team.assigned())?;
         self.record(seen.tick, seen.steps, &TickTimes::from(seen.team))?;
         Ok(Verdict::Continue)
     }

@@ -61,7 +61,7 @@ pub struct Summary {
     /// Who did not take part all the time.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub absences: Vec<Absence>,
-    /// What robots that meet nobody need, for teams of up to 16 robots.
+    /// What robots that meet nobody need, for teams of up to 16 robots whose set-points do not change.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lower_bound: Option<LowerBound>,
     /// Duration of a tick as the coordinator sees it.
@@ -102,9 +102,10 @@ impl Summary {
             end,
             guarantee: guarantee.statement,
             guarantee_broken: guarantee.broken,
-            run,
             absences: Vec::new(),
-            lower_bound: (scenario.robots.len() <= BOUNDED).then(|| LowerBound::of(scenario, params)),
+            lower_bound: (scenario.robots.len() <= BOUNDED && run.tasks.is_none())
+                .then(|| LowerBound::of(scenario, params)),
+            run,
             tick_latency: timings.tick.percentiles(),
             tick_parts: timings.parts.percentiles(),
             lateness: None,

@@ -4,12 +4,13 @@
 //! [`ProcessTeam`] ends every process and deletes every shared file of the run.
 
 use crate::clock::{Clock, Overruns};
+use crate::destinations::Destinations;
 use crate::launch::{self, Agents};
 use crate::members::Members;
 use crate::own_runtime_dir::OwnRuntimeDir;
 use crate::roster::{PeerLost, Roster};
 use crate::run::{OnLoss, Options, Outcome, RunError};
-use shared::exchange::CoordinatorPort;
+use shared::exchange::{CoordinatorPort, TeamNow};
 use shared::messages::{MAX_ROBOTS, Stamps};
 use shared::os;
 use shared::runtime_dir::{self, RuntimeDir};
@@ -24,6 +25,7 @@ use vodca::params::Params;
 use vodca::play::Playable;
 use vodca::scenario::{Scenario, ScenarioError};
 use vodca::step::Step;
+use vodca::tasks::Assignment;
 
 mod collect;
 mod losses;
@@ -102,6 +104,7 @@ pub struct ProcessTeam {
     stop: StopFlag,
     clock: Clock,
     members: Members,
+    destinations: Destinations,
     epoch: u64,
     /// What has come of the tick that is under way.
     reported: Vec<Option<Step>>,
@@ -153,6 +156,7 @@ impl ProcessTeam {
         Ok(Self {
             roster: Roster::new(options.run.clone(), names),
             members: Members::new(scenario),
+            destinations: Destinations::new(options.tasks.clone(), &options.run),
             setup: Setup { team: file, scenario: scenario.clone(), params: params.clone() },
             port,
             place,
@@ -179,6 +183,14 @@ impl ProcessTeam {
             self.roster.started(robot, child);
         }
         Ok(())
+    }
+
+    /// Sends on who has arrived, and whoever somebody outside has sent elsewhere.
+    fn hand_out(&mut self, tick: u64) {
+        self.destinations.hand_out(tick, &self.measured, self.members.membership());
+        for &Assignment { robot, set_point, .. } in self.destinations.assigned() {
+            self.setup.scenario.robots[robot].set_point = set_point;
+        }
     }
 
     /// Waits until every robot is there, and until all are connected.
@@ -295,8 +307,16 @@ impl Playable for ProcessTeam {
         self.welcome(tick)?;
         let killed = self.strike(tick);
         self.members.begin(tick);
-        self.moments.announced =
-            self.port.announce(tick, horizons, self.members.membership().members(), self.members.bodies())?;
+        self.hand_out(tick);
+        self.moments.announced = self.port.announce(
+            tick,
+            horizons,
+            &TeamNow {
+                members: self.members.membership().members(),
+                bodies: self.members.bodies(),
+                set_points: self.destinations.set_points(),
+            },
+        )?;
         self.moments.rung = os::now_ns();
         self.moments.late = self.clock.begin(self.moments.announced);
         self.miss_on_purpose(tick);
@@ -315,7 +335,11 @@ impl Playable for ProcessTeam {
         &self.finished
     }
 
+    fn assigned(&self) -> &[Assignment] {
+        self.destinations.assigned()
+    }
+
     fn awaits_somebody(&self) -> bool {
-        self.members.awaits_somebody()
+        self.members.awaits_somebody() || self.destinations.is_pending(self.members.membership())
     }
 }

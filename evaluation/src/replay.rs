@@ -2,7 +2,7 @@
 
 use crate::in_process::drive_whole;
 use crate::roll::Roll;
-use coordinator::record::{PARAMS_FILE, SCENARIO_FILE, horizons, membership, trajectory};
+use coordinator::record::{PARAMS_FILE, SCENARIO_FILE, horizons, membership, set_points, trajectory};
 use coordinator::solver_check::SolverCheck;
 use std::path::{Path, PathBuf};
 use vodca::horizon_source::{HorizonSource, HorizonSpec};
@@ -83,11 +83,17 @@ pub fn repeat(folder: &Path, check: bool) -> Result<(Repetition, Option<SolverCh
     let build = if check { Team::checked } else { Team::new };
     let mut team = build(&scenario, &params, scenario.seed);
     let mut positions: Vec<_> = scenario.robots.iter().map(|robot| robot.start).collect();
-    let changes = match read(membership::FILE) {
-        Ok(text) => membership::read(&text).map_err(|line| malformed(format!("{}, line {line}", membership::FILE)))?,
-        Err(ReplayError::Unreadable { source, .. }) if source.kind() == std::io::ErrorKind::NotFound => Vec::new(),
-        Err(error) => return Err(error),
+    let read_if_there = |name: &str| match read(name) {
+        Ok(text) => Ok(Some(text)),
+        Err(ReplayError::Unreadable { source, .. }) if source.kind() == std::io::ErrorKind::NotFound => Ok(None),
+        Err(error) => Err(error),
     };
+    let line_of = |file: &'static str| move |line| malformed(format!("{file}, line {line}"));
+    let changes = read_if_there(membership::FILE)?.map(|text| membership::read(&text)).transpose();
+    let changes = changes.map_err(line_of(membership::FILE))?.unwrap_or_default();
+    let assigned =
+        read_if_there(set_points::FILE)?.map(|text| set_points::read(&text, scenario.robots.len())).transpose();
+    let assigned = assigned.map_err(line_of(set_points::FILE))?.unwrap_or_default();
     if let Some(change) = changes.iter().find(|change| change.robot >= scenario.robots.len()) {
         return Err(malformed(format!("there is no robot {}, which {} names", change.robot, membership::FILE)));
     }
@@ -103,12 +109,18 @@ pub fn repeat(folder: &Path, check: bool) -> Result<(Repetition, Option<SolverCh
             positions.iter_mut().zip(steps).for_each(|(position, step)| *position = step.next_position);
             tick += 1;
         };
-        if roll.is_full() {
+        if roll.is_full() && assigned.is_empty() {
             drive_whole(&mut team, &scenario, &params, &source, note);
         } else {
             for tick in 0..ticks {
                 let horizons: Vec<_> = (0..scenario.robots.len()).map(|robot| source.horizon(robot, tick)).collect();
-                note(team.step_without(&horizons, &roll.tick(tick)));
+                let of_now: Vec<_> = assigned.iter().filter(|given| given.tick == tick).copied().collect();
+                team.assign(&of_now);
+                note(if roll.is_full() {
+                    team.step(&horizons)
+                } else {
+                    team.step_without(&horizons, &roll.tick(tick))
+                });
             }
         }
     }

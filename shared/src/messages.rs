@@ -44,7 +44,7 @@ pub mod kind {
 /// nothing: the coordinator will miss its report.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, ZeroCopySend)]
-#[type_name("vodca/Announcement/3")]
+#[type_name("vodca/Announcement/4")]
 pub struct Announcement {
     /// Which episode of this run it belongs to, from [`crate::team::FIRST_EPOCH`]; robots ignore older ones.
     pub epoch: u64,
@@ -58,8 +58,12 @@ pub struct Announcement {
     pub plans: u16,
     /// How many robots did not take part in the tick before.
     pub absent: u16,
+    /// How many set-points are told here; 0: they are the scenario's.
+    pub told_set_points: u16,
     /// Where those stand, m, by robot; the others' entries mean nothing.
     pub bodies: [[f64; 2]; MAX_ROBOTS],
+    /// Set-points, m, by robot; the entries mean nothing while none is told.
+    pub set_points: [[f64; 2]; MAX_ROBOTS],
     /// Which life of every robot counts ([`Author::life`]).
     pub lives: [u32; MAX_ROBOTS],
     /// How every robot takes part, a [`State`] as its number.
@@ -233,7 +237,9 @@ impl Default for Announcement {
             order: 0,
             plans: 0,
             absent: 0,
+            told_set_points: 0,
             bodies: [[0.0; 2]; MAX_ROBOTS],
+            set_points: [[0.0; 2]; MAX_ROBOTS],
             lives: [0; MAX_ROBOTS],
             states: [0; MAX_ROBOTS],
             horizons: [0; MAX_ROBOTS],
@@ -249,6 +255,14 @@ impl Announcement {
             let state = State::from_number(number).filter(|state| state.has_stood())?;
             Some((robot, state, Position::from(self.bodies[robot])))
         })
+    }
+}
+
+impl Announcement {
+    /// The set-points that hold from this tick on, m, by robot; none while all are the scenario's.
+    pub fn set_points(&self) -> impl Iterator<Item = Position> + '_ {
+        let told = usize::from(self.told_set_points).min(MAX_ROBOTS);
+        self.set_points[..told].iter().map(|&at| Position::from(at))
     }
 }
 

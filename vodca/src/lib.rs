@@ -93,6 +93,8 @@ pub mod scenario;
 pub mod separation;
 pub mod step;
 pub mod suggest;
+pub mod task_list;
+pub mod tasks;
 pub mod team;
 pub mod vodca_controller;
 pub mod way;

@@ -8,6 +8,7 @@ use crate::horizon::Horizon;
 use crate::horizon_source::Horizons;
 use crate::metrics::RunMetrics;
 use crate::step::Step;
+use crate::tasks::Assignment;
 
 /// A team that [`play`] can run.
 pub trait Playable {
@@ -34,7 +35,12 @@ pub trait Playable {
     /// What every robot did in the newest tick, by robot number.
     fn steps(&self) -> &[Step];
 
-    /// Whether a robot that is lost comes back: the run does not end without it.
+    /// The set-points that hold since the newest tick.
+    fn assigned(&self) -> &[Assignment] {
+        &[]
+    }
+
+    /// Whether a robot that is lost comes back, or somebody has another task: the run does not end without it.
     fn awaits_somebody(&self) -> bool {
         false
     }
@@ -134,6 +140,7 @@ pub fn play<T: Playable, H: Horizons, E>(
         team.await_tick(tick).map_err(Halt::Team)?;
         horizons.choose(tick, team.measured(), &mut chosen).map_err(Halt::Horizons)?;
         team.tick(tick, &chosen).map_err(Halt::Team)?;
+        metrics.assign(team.assigned());
         metrics.observe(tick, team.steps());
         let seen = Tick { tick, steps: team.steps(), metrics, team: &*team, horizons: &*horizons };
         let mut over = limits.until_arrival && metrics.settled() && !team.awaits_somebody();

@@ -36,6 +36,8 @@ pub enum Use {
     BackOff = 13,
     /// Faults on purpose.
     Fault = 14,
+    /// Where robots go next that have arrived.
+    Task = 15,
     /// The learner's first weights, batches and action noise.
     Learning = 20,
 }

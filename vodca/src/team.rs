@@ -13,6 +13,7 @@ use crate::play::Playable;
 use crate::robot::Robot;
 use crate::scenario::Scenario;
 use crate::step::{Status, Step};
+use crate::tasks::Assignment;
 use std::convert::Infallible;
 use std::sync::Arc;
 
@@ -130,9 +131,8 @@ impl Team {
         let of = |robot: usize, state| roll.get(robot).is_some_and(|attendance| attendance.announced == state);
         let lost: Vec<_> = (0..at.len()).map(|robot| of(robot, State::Lost).then_some(at[robot])).collect();
         if lost != self.lost && (!self.lost.is_empty() || lost.iter().any(Option::is_some)) {
-            let layout = Arc::new(Layout::with_lost(&self.scenario, &self.model, &lost));
-            self.robots.iter_mut().for_each(|robot| robot.lay_out(&layout));
             self.lost = lost;
+            self.lay_out();
         }
         for robot in (0..at.len()).filter(|&robot| of(robot, State::Back)) {
             self.hearing[robot].restart(self.tick);
@@ -143,6 +143,22 @@ impl Team {
                 hearing.note_absent(self.tick, robot, attendance.announced, at[robot]);
             }
         }
+    }
+
+    /// From the next tick on the set-points of `assignments` hold.
+    pub fn assign(&mut self, assignments: &[Assignment]) {
+        for &Assignment { robot, set_point, .. } in assignments {
+            self.scenario.robots[robot].set_point = set_point;
+        }
+        if !assignments.is_empty() {
+            self.lay_out();
+        }
+    }
+
+    /// Everybody learns the set-points of now, and where lost robots stand.
+    fn lay_out(&mut self) {
+        let layout = Arc::new(Layout::with_lost(&self.scenario, &self.model, &self.lost));
+        self.robots.iter_mut().for_each(|robot| robot.lay_out(&layout));
     }
 
     /// Where every robot measures itself at the start of the next tick, m, by robot number.

@@ -3,6 +3,7 @@
 use super::parameter_args::{ParameterArgs, TeamArgs};
 use super::run_losses::LossArgs;
 use super::run_policy::PolicyArgs;
+use super::run_tasks::TaskArgs;
 use crate::commands::report as page;
 use crate::exit::{self, Ending, Failure};
 use crate::progress::Progress;
@@ -26,6 +27,7 @@ use vodca::metrics::RunMetrics;
 use vodca::params::Params;
 use vodca::play::Verdict;
 use vodca::scenario::{Scenario, set_up};
+use vodca::tasks::Tasks;
 
 /// Arguments of `run`.
 #[derive(Debug, clap::Args)]
@@ -37,6 +39,7 @@ Examples:
   ./run.sh 8 --scenario my_layout.toml --set vodca.rows=each --out my_run
   ./run.sh 14 --policy policies/exchange_14
   ./run.sh 14 --real-time --respawn 3 --chaos kill:0.002,drop:0.01,seed:7
+  ./run.sh 14 --tasks random:1 --max-ticks 3000
   ./run.sh 14 --horizon script:runs/20260131-120000-ex14_d-14/horizons.csv
 Without --scenario: 2 two_setpoint, 4 four_gate, 14 ex14_d, otherwise a ring.
 Exit codes: 0 arrived, or asked to stop; 1 not arrived, collided or lost on the way; 2 wrong usage; 3 a robot's process
@@ -87,6 +90,8 @@ pub struct Args {
     pub(crate) foxglove: Option<u16>,
     #[command(flatten)]
     losses: LossArgs,
+    #[command(flatten)]
+    tasks: TaskArgs,
     /// Print the robots' commands and wait for them to be started by hand
     #[arg(long)]
     by_hand: bool,
@@ -108,9 +113,11 @@ pub fn run(args: Args) -> Ending {
     // Whether there are horizons for all is said before anything is made.
     HorizonSource::new(&args.horizon, scenario.robots.len(), scenario.seed, params.horizon.jitter)
         .map_err(Failure::usage)?;
+    let tasks = args.tasks.tasks(&scenario, &params)?;
     let folder =
         RunFolder::create(args.out.as_deref(), &scenario.name, scenario.robots.len()).map_err(Failure::usage)?;
     let mut options = options(&args, &scenario, &folder)?;
+    options.tasks = Some(tasks);
     if let Some(policy) = &args.policy {
         options.policy = Some(args.use_policy.options(policy, &scenario)?);
     }
@@ -202,6 +209,7 @@ fn play(
     stop: &StopFlag,
 ) -> Ending {
     let by_hand = matches!(options.agents, Agents::ByHand);
+    let endless = options.tasks.as_ref().is_some_and(Tasks::is_endless);
     let run = Run::launch(scenario, params, options, stop).map_err(Failure::broken)?;
     for robot in (0..scenario.robots.len()).filter(|_| by_hand) {
         stdout::line(launch::command_line(session.path(), robot))?;
@@ -211,7 +219,8 @@ fn play(
         progress.tick(tick + 1, metrics.arrived(), steps.len(), metrics.min_separation());
         Ok(Verdict::Continue)
     };
-    let mut metrics = RunMetrics::new(scenario, params);
+    let metrics = RunMetrics::new(scenario, params);
+    let mut metrics = if endless { metrics.endless() } else { metrics };
     let ended = run.play(&mut [&mut session, &mut views, &mut told], &mut metrics);
     progress.finish();
     views.close(); // the terminal first: what follows is to be read

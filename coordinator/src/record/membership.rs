@@ -4,7 +4,8 @@
 //! of its processes that is about, and how it came about. Together with `horizons.csv` it says all that is needed to
 //! repeat the run.
 
-use super::folder::{GrowingFile, RecordError};
+use super::folder::RecordError;
+use super::on_demand::OnDemandFile;
 use crate::members::Change;
 use std::path::PathBuf;
 use vodca::membership::State;
@@ -17,34 +18,26 @@ pub const HEADER: &str = "tick,robot,state,life,why";
 /// Writes the file when there is something to write.
 #[derive(Debug)]
 pub struct MembershipWriter {
-    path: PathBuf,
-    file: Option<GrowingFile>,
+    file: OnDemandFile,
     written: usize,
 }
 
 impl MembershipWriter {
     /// A file at `path` that does not exist before the first change.
     pub fn new(path: PathBuf) -> Self {
-        Self { path, file: None, written: 0 }
+        Self { file: OnDemandFile::new(path, HEADER), written: 0 }
     }
 
     /// Appends what is new among `changes`, which are all of the run.
     pub fn write(&mut self, changes: &[Change]) -> Result<(), RecordError> {
         let new = changes.get(self.written..).unwrap_or_default();
-        if new.is_empty() {
-            return Ok(());
-        }
         let mut text = String::new();
-        if self.file.is_none() {
-            self.file = Some(GrowingFile::create(self.path.clone())?);
-            text = format!("{HEADER}\n");
-        }
         for Change { tick, robot, state, life, why } in new {
             let why = why.replace('"', "\"\"").replace(['\n', '\r'], " ");
             text += &format!("{tick},{robot},{},{life},\"{why}\"\n", word(*state));
         }
         self.written = changes.len();
-        self.file.as_mut().map_or(Ok(()), |file| file.append(text.as_bytes()))
+        self.file.append(&text)
     }
 }
 

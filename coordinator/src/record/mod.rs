@@ -8,6 +8,7 @@
 //! | `run.mcap` | the same as a film, with predicted paths | tick by tick |
 //! | `latency.csv` | how long ticks and plans took | tick by tick |
 //! | `membership.csv` | who did not take part, when and why | when it happens |
+//! | `set_points.csv` | set-points that changed | when it happens |
 //! | `summary.json` | how it went | at the end |
 //!
 //! A run that is cut leaves everything up to its last tick and no `summary.json`.
@@ -19,10 +20,12 @@ pub mod horizons;
 pub mod latency;
 pub mod mcap;
 pub mod membership;
+mod on_demand;
 #[doc(hidden)]
 pub mod samples;
 mod scene;
 pub(crate) mod scene_messages;
+pub mod set_points;
 pub mod trajectory;
 
 pub use about::About;

@@ -130,7 +130,7 @@ pub fn verify(folder: &Path) -> Result<Report, VerifyError> {
         std::fs::read_to_string(&path).map_err(|source| VerifyError::Unreadable { path, source })
     };
     let malformed = |name: &str, reason: String| VerifyError::Malformed { path: folder.join(name), reason };
-    let scenario = Scenario::from_toml(&read("scenario.toml")?, "recorded", "scenario.toml")
+    let mut scenario = Scenario::from_toml(&read("scenario.toml")?, "recorded", "scenario.toml")
         .map_err(|error| malformed("scenario.toml", error.to_string()))?;
     let params = Params::from_toml(&read("params.toml")?, "params.toml")
         .map_err(|error| malformed("params.toml", error.to_string()))?;
@@ -139,7 +139,23 @@ pub fn verify(folder: &Path) -> Result<Report, VerifyError> {
         Err(VerifyError::Unreadable { source, .. }) if source.kind() == std::io::ErrorKind::NotFound => None,
         Err(error) => return Err(error),
     };
+    match read("set_points.csv") {
+        Ok(text) => send_on(&mut scenario, &text)
+            .map_err(|line| malformed("set_points.csv", format!("line {line} is no tick,robot,x,y of this team")))?,
+        Err(VerifyError::Unreadable { source, .. }) if source.kind() == std::io::ErrorKind::NotFound => {}
+        Err(error) => return Err(error),
+    }
     Ok(check(&read("trajectory.csv")?, &read("horizons.csv")?, &scenario, &params, summary.as_ref()))
+}
+
+/// Gives everybody its last set-point; `Err`: the first line of `text` that means nothing, from 1.
+fn send_on(scenario: &mut Scenario, text: &str) -> Result<(), usize> {
+    for (at, line) in text.lines().enumerate().skip(1) {
+        let fields: Vec<f64> = line.split(',').map_while(|field| field.parse().ok()).collect();
+        let [_, robot, x, y] = fields[..] else { return Err(at + 1) };
+        scenario.robots.get_mut(robot as usize).ok_or(at + 1)?.set_point = [x, y].into();
+    }
+    Ok(())
 }
 
 /// Checks a record that was read already; `summary`: none when the run was cut.

@@ -10,6 +10,17 @@ use vodca::Position;
 use vodca::horizon::Horizon;
 use vodca::membership::Member;
 
+/// What everybody is told of the team when a tick begins, by robot number.
+#[derive(Clone, Copy, Debug)]
+pub struct TeamNow<'a> {
+    /// Who takes part.
+    pub members: &'a [Member],
+    /// Where everybody's body is, m.
+    pub bodies: &'a [Position],
+    /// Everybody's set-point, m; empty: they are the scenario's.
+    pub set_points: &'a [Position],
+}
+
 /// Announces ticks and collects reports.
 #[derive(Debug)]
 pub struct CoordinatorPort {
@@ -39,15 +50,9 @@ impl CoordinatorPort {
     }
 
     /// Announces tick `tick` to every robot, in a relayed exchange with all plans of `tick - 1`.
-    /// `horizons`: N_i^k by robot; `members` say who takes part, `bodies` where everybody's body is, m. Gives the stamp of
-    /// the announcement, ns.
-    pub fn announce(
-        &mut self,
-        tick: u64,
-        horizons: &[Horizon],
-        members: &[Member],
-        bodies: &[Position],
-    ) -> Result<u64, ServiceError> {
+    /// `horizons`: N_i^k by robot. Gives the stamp of the announcement, ns.
+    pub fn announce(&mut self, tick: u64, horizons: &[Horizon], team: &TeamNow<'_>) -> Result<u64, ServiceError> {
+        let TeamNow { members, bodies, set_points } = *team;
         let mut announcement = Announcement { epoch: self.epoch, tick, order: order::TICK, ..Default::default() };
         for (robot, member) in members.iter().enumerate().take(MAX_ROBOTS) {
             announcement.lives[robot] = member.life;
@@ -56,6 +61,10 @@ impl CoordinatorPort {
                 announcement.absent += 1;
                 announcement.bodies[robot] = bodies[robot].into();
             }
+        }
+        announcement.told_set_points = set_points.len().min(MAX_ROBOTS) as u16;
+        for (to, set_point) in announcement.set_points.iter_mut().zip(set_points) {
+            *to = (*set_point).into();
         }
         for (to, horizon) in announcement.horizons.iter_mut().zip(horizons) {
             *to = horizon.steps() as u8;

@@ -12,7 +12,7 @@ mod coordinator_port;
 mod peer;
 mod relay;
 
-pub use coordinator_port::CoordinatorPort;
+pub use coordinator_port::{CoordinatorPort, TeamNow};
 
 use crate::messages::{Announcement, Report, order};
 use crate::os;
@@ -98,6 +98,8 @@ pub enum News<'a> {
         /// Where it stands, m.
         at: Position,
     },
+    /// The set-points that hold from this tick on, m, by robot number. Not told while all are the scenario's.
+    SetPoints(&'a [Position]),
 }
 
 /// What is told the news.
@@ -128,8 +130,15 @@ pub fn open(
 ) -> Result<Box<dyn Exchange>, ServiceError> {
     let services = Services::open(place, robots, kind == Kind::Peer)?;
     let life = services.next_life(robot);
-    let clock =
-        Clock { announcements: services.announcements()?, robot, epoch, life, next_tick: 0, absent: Vec::new() };
+    let clock = Clock {
+        announcements: services.announcements()?,
+        robot,
+        epoch,
+        life,
+        next_tick: 0,
+        absent: Vec::new(),
+        set_points: Vec::new(),
+    };
     let reporter = services.reporter()?;
     Ok(match services.plans()? {
         Some((sender, receiver)) => Box::new(peer::Peer::new(clock, reporter, sender, receiver, robots)),
@@ -146,11 +155,16 @@ struct Clock {
     next_tick: u64,
     /// Who stood during the tick before the announced one.
     absent: Vec<(usize, State, Position)>,
+    /// The set-points that were announced, m; none: they are the scenario's.
+    set_points: Vec<Position>,
 }
 
 impl Clock {
-    /// Tells `hear` who stood.
-    fn tell_absent(&self, hear: &mut Hear<'_>) {
+    /// Tells `hear` who stood, and where everybody goes.
+    fn tell_team(&self, hear: &mut Hear<'_>) {
+        if !self.set_points.is_empty() {
+            hear(News::SetPoints(&self.set_points));
+        }
         for &(robot, state, at) in &self.absent {
             hear(News::Absent { robot, state, at });
         }
@@ -165,7 +179,7 @@ impl Clock {
         let mut waited = false;
         loop {
             let (robot, epoch, life, next_tick) = (self.robot, self.epoch, self.life, self.next_tick);
-            let absent = &mut self.absent;
+            let (absent, set_points) = (&mut self.absent, &mut self.set_points);
             let received = self.announcements.receive(|announcement, plans| {
                 if announcement.epoch < epoch {
                     return None;
@@ -187,6 +201,8 @@ impl Clock {
                         frame(announcement, plans);
                         absent.clear();
                         absent.extend(announcement.absent());
+                        set_points.clear();
+                        set_points.extend(announcement.set_points());
                         let horizon = announcement.horizons.get(robot).copied().unwrap_or(0);
                         Some(Order::Tick {
                             tick: announcement.tick,

@@ -77,7 +77,7 @@ impl Exchange for Peer {
                 }
             }
         }
-        self.clock.tell_absent(hear);
+        self.clock.tell_team(hear);
         Ok(order)
     }
 

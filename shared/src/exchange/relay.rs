@@ -35,7 +35,7 @@ impl Exchange for Relay {
             }
         })?;
         if let Some(Order::Tick { .. }) = order {
-            self.clock.tell_absent(hear);
+            self.clock.tell_team(hear);
         }
         Ok(order)
     }

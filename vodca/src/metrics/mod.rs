@@ -4,7 +4,7 @@ mod run;
 mod summary;
 
 pub use run::RunMetrics;
-pub use summary::{RobotSummary, RunSummary, SolverLevels, Statuses};
+pub use summary::{RobotSummary, RunSummary, SolverLevels, Statuses, TaskSummary};
 
 use crate::Position;
 use crate::geometry::Disc;

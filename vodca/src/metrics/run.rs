@@ -1,12 +1,13 @@
 //! The accumulator of a run's figures, used by the in-process team, the coordinator and offline.
 
-use super::{RobotSummary, RunSummary, SEPARATION_TOLERANCE, SolverLevels, Statuses};
+use super::{RobotSummary, RunSummary, SEPARATION_TOLERANCE, SolverLevels, Statuses, TaskSummary};
 use crate::Position;
 use crate::obstacles::Obstacles;
 use crate::params::Params;
 use crate::scenario::Scenario;
 use crate::separation::separation;
 use crate::step::{Status, Step};
+use crate::tasks::Assignment;
 
 /// Larger than any rounding error of a distance between coordinates the scenario check accepts, m.
 const ROUNDING: f64 = 1e-8;
@@ -26,6 +27,10 @@ pub struct RunMetrics {
     moves: Vec<(Position, Position)>,
     /// What each pair has done so far, `BELOW` and `COLLIDED`; row i holds robots, then obstacles.
     pairs: Vec<u8>,
+    /// Whether any set-point has changed so far.
+    has_tasks: bool,
+    /// Nobody is ever done.
+    endless: bool,
     ticks: u64,
     ticks_below: u64,
     ticks_collided: u64,
@@ -46,6 +51,10 @@ struct Tally {
     travel: f64,
     path_length: f64,
     arrived_since: Option<u64>,
+    /// Set-points that it has left again for the next one.
+    done: u64,
+    /// How long it stood at those, ticks.
+    waited: u64,
     /// Its process has ended and nobody drives it.
     lost: bool,
     least: f64,
@@ -75,6 +84,8 @@ impl RunMetrics {
                     travel: 0.0,
                     path_length: 0.0,
                     arrived_since: (straight_line < tolerance).then_some(0),
+                    done: 0,
+                    waited: 0,
                     lost: false,
                     least: f64::INFINITY,
                     activations: 0,
@@ -96,6 +107,8 @@ impl RunMetrics {
             pairs: vec![0; robots.len() * (robots.len() + obstacles.count())],
             obstacles,
             robots,
+            has_tasks: false,
+            endless: false,
             ticks: 0,
             ticks_below: 0,
             ticks_collided: 0,
@@ -104,6 +117,29 @@ impl RunMetrics {
         };
         metrics.observe_separations();
         metrics
+    }
+
+    /// The same of a run with tasks without end: it is a success although somebody is under way when it ends.
+    #[must_use]
+    pub fn endless(self) -> Self {
+        Self { endless: true, ..self }
+    }
+
+    /// Takes in set-points that hold from the tick on that is observed next. The way to each counts from where its robot
+    /// is.
+    pub fn assign(&mut self, assignments: &[Assignment]) {
+        for &Assignment { tick, robot, set_point } in assignments {
+            let (at, robot) = (self.moves[robot].1, &mut self.robots[robot]);
+            if let Some(arrived) = robot.arrived_since.take() {
+                robot.done += 1;
+                robot.waited += tick - arrived;
+            } else {
+                robot.straight_line -= (robot.set_point - at).norm(); // what it does not drive any more
+            }
+            robot.set_point = set_point;
+            robot.straight_line += (set_point - at).norm();
+            self.has_tasks = true;
+        }
     }
 
     /// Takes in tick `tick`; `steps[i]` is robot i's. Call once per tick, ticks in order from 0.
@@ -229,6 +265,20 @@ impl RunMetrics {
         self.robots.iter().map(|robot| robot.least).fold(f64::INFINITY, f64::min)
     }
 
+    fn task_summary(&self) -> TaskSummary {
+        let done: u64 = self.robots.iter().map(|robot| robot.done).sum();
+        let arrivals = done + self.arrived() as u64;
+        let share = |total: f64, count: u64| (count > 0).then(|| total / count as f64);
+        let seconds = self.ticks as f64 * self.sample_time;
+        let waited = self.robots.iter().map(|robot| robot.waited).sum::<u64>() as f64 * self.sample_time;
+        TaskSummary {
+            arrivals,
+            per_minute: (seconds > 0.0).then(|| 60.0 * arrivals as f64 / seconds),
+            mean_wait: share(waited, done),
+            path_per_arrival: share(self.robots.iter().map(|robot| robot.path_length).sum(), arrivals),
+        }
+    }
+
     /// The figures so far.
     pub fn finish(&self) -> RunSummary {
         let hazards = self.robots.len() + self.obstacles.count();
@@ -260,7 +310,7 @@ impl RunMetrics {
         let straight_line: f64 = robots.iter().map(|robot| robot.straight_line).sum();
         let collisions = pairs_with(COLLIDED);
         RunSummary {
-            success: self.arrived_all() && collisions == 0 && self.lost() == 0,
+            success: (self.arrived_all() || self.endless) && collisions == 0 && self.lost() == 0,
             ticks: self.ticks,
             completion_time: self.arrived_all().then_some(self.ticks as f64 * self.sample_time),
             path_cost,
@@ -274,6 +324,7 @@ impl RunMetrics {
             robots_collided: total(|robot| u64::from(robot.collided)),
             activations: total(|robot| robot.activations),
             shut_off: self.shut_off() as u64,
+            tasks: (self.has_tasks || self.endless).then(|| self.task_summary()),
             ticks_with_rows: total(|robot| robot.ticks_with_rows),
             infeasible: total(|robot| robot.infeasible),
             solver_levels: self.levels,

@@ -36,6 +36,9 @@ pub struct RunSummary {
     /// Robots that could not arrive, because a lost one stands where they wanted to be.
     #[serde(default)]
     pub shut_off: u64,
+    /// What came of set-points at run time, in a run with them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tasks: Option<TaskSummary>,
     /// (Robot, tick) pairs with at least one row.
     pub ticks_with_rows: u64,
     /// (Robot, tick) pairs whose hard rows were infeasible (relaxed or held).
@@ -49,6 +52,19 @@ pub struct RunSummary {
     pub filtered: u64,
     /// One entry per robot, by number.
     pub robots: Vec<RobotSummary>,
+}
+
+/// The figures of a run in which set-points change.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct TaskSummary {
+    /// Set-points that were reached and left for the next one, and those at which somebody stands at the end.
+    pub arrivals: u64,
+    /// Those per minute of the run.
+    pub per_minute: Option<f64>,
+    /// How long a robot that had arrived stood on average before its next set-point was given, s; `None`: none was.
+    pub mean_wait: Option<f64>,
+    /// All paths over all arrivals, m.
+    pub path_per_arrival: Option<f64>,
 }
 
 /// The figures of one robot.

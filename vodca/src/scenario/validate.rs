@@ -35,6 +35,38 @@ impl Scenario {
         self.find_closed_way(min_separation).map_err(|problem| self.invalid(problem))
     }
 
+    /// This layout with other set-points, by robot number, m; checked as a layout is before a run, but for the starts,
+    /// where nobody may be any more.
+    ///
+    /// # Errors
+    /// A set-point that cannot be, be filled beside the others, or be reached.
+    pub fn with_set_points(
+        &self,
+        set_points: &[(usize, Position)],
+        min_separation: f64,
+    ) -> Result<Self, ScenarioError> {
+        let mut changed = self.clone();
+        for &(robot, set_point) in set_points {
+            changed.robots[robot].set_point = set_point;
+        }
+        changed.validate_distances(min_separation)?;
+        self.alone(set_points).check(min_separation)?;
+        Ok(changed)
+    }
+
+    /// Only these robots, with these set-points, m.
+    pub(crate) fn alone(&self, set_points: &[(usize, Position)]) -> Self {
+        let robot = |&(robot, set_point): &(usize, Position)| super::Robot { set_point, ..self.robots[robot].clone() };
+        Self { robots: set_points.iter().map(robot).collect(), ..self.clone() }
+    }
+
+    /// Checks all that can be checked.
+    pub(crate) fn check(&self, min_separation: f64) -> Result<(), ScenarioError> {
+        self.validate()?;
+        self.validate_distances(min_separation)?;
+        self.validate_ways(min_separation)
+    }
+
     pub(super) fn invalid(&self, problem: Problem) -> ScenarioError {
         ScenarioError::Invalid { scenario: self.name.clone(), problem }
     }
