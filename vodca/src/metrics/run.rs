@@ -272,6 +272,7 @@ impl RunMetrics {
         let seconds = self.ticks as f64 * self.sample_time;
         let waited = self.robots.iter().map(|robot| robot.waited).sum::<u64>() as f64 * self.sample_time;
         TaskSummary {
+            endless: self.endless,
             arrivals,
             per_minute: (seconds > 0.0).then(|| 60.0 * arrivals as f64 / seconds),
             mean_wait: share(waited, done),

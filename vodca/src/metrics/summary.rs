@@ -57,6 +57,8 @@ pub struct RunSummary {
 /// The figures of a run in which set-points change.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TaskSummary {
+    /// Whether robots were always given another one: nobody has to have arrived at the end.
+    pub endless: bool,
     /// Set-points that were reached and left for the next one, and those at which somebody stands at the end.
     pub arrivals: u64,
     /// Those per minute of the run.
