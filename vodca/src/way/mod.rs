@@ -45,7 +45,16 @@ impl Ways {
         let filling = Filling::new(places, &corners, min_separation);
         let ends: Vec<Position> = places.iter().map(|place| place.centre).collect();
         let routes = Route::of_team(&ends, separations, &corners);
-        let outside = Route::of_team(&filling.outside, separations, &corners);
+        // Most wait for nobody.
+        let outside = filling.outside.iter().enumerate().map(|(robot, &at)| {
+            let waits = at != ends[robot];
+            if waits {
+                Route::new(robot, at, separations[robot], corners[robot].clone())
+            } else {
+                routes[robot].clone()
+            }
+        });
+        let outside = outside.collect();
         Self { routes, outside, filling }
     }
 }

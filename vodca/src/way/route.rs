@@ -63,7 +63,7 @@ impl Route {
         ends.iter().enumerate().map(route).collect()
     }
 
-    fn new(robot: usize, set_point: Position, separation: f64, corners: Arc<Corners>) -> Self {
+    pub(super) fn new(robot: usize, set_point: Position, separation: f64, corners: Arc<Corners>) -> Self {
         let Corners { ground, places, at, .. } = &*corners;
         let sees = |to: Position| -> Vec<Option<RobotSet>> {
             at.iter().map(|from| ground.is_free(*from, to).then(|| between_but(places, robot, *from, to))).collect()
