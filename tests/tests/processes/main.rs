@@ -16,6 +16,7 @@ mod limits;
 mod lost;
 mod same_bytes;
 mod slow_viewer;
+mod tasks;
 mod two_runs;
 
 /// Starts a run, waits for its end, and checks what it left: nothing off in its record, and the same bytes when it is
