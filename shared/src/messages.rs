@@ -59,8 +59,8 @@ pub struct Announcement {
     /// How many robots did not take part in the tick before.
     pub absent: u16,
     /// How many set-points are told here; 0: they are the scenario's.
-    pub told_set_points: u16,
-    /// Where those stand, m, by robot; the others' entries mean nothing.
+    pub told_set_points: u64,
+    /// Where the absent ones stand, m, by robot; the others' entries mean nothing.
     pub bodies: [[f64; 2]; MAX_ROBOTS],
     /// Set-points, m, by robot; the entries mean nothing while none is told.
     pub set_points: [[f64; 2]; MAX_ROBOTS],
@@ -261,7 +261,7 @@ impl Announcement {
 impl Announcement {
     /// The set-points that hold from this tick on, m, by robot; none while all are the scenario's.
     pub fn set_points(&self) -> impl Iterator<Item = Position> + '_ {
-        let told = usize::from(self.told_set_points).min(MAX_ROBOTS);
+        let told = self.told_set_points.min(MAX_ROBOTS as u64) as usize;
         self.set_points[..told].iter().map(|&at| Position::from(at))
     }
 }
@@ -457,13 +457,20 @@ mod tests {
         announcement.bodies[1] = [1.0, -2.0];
         let told: Vec<_> = announcement.absent().collect();
         assert_eq!(told, [(1, State::Lost, Position::new(1.0, -2.0)), (3, State::Back, Position::zeros())]);
+        assert_eq!(announcement.set_points().count(), 0);
+        announcement.set_points[1] = [3.0, 4.0];
+        for (told, expected) in [(2, 2), (u64::MAX, MAX_ROBOTS)] {
+            announcement.told_set_points = told;
+            assert_eq!(announcement.set_points().count(), expected);
+            assert_eq!(announcement.set_points().nth(1), Some(Position::new(3.0, 4.0)));
+        }
         announcement.absent = 0;
         assert_eq!(announcement.absent().count(), 0);
     }
 
     #[test]
     fn payloads_have_no_hidden_padding() {
-        assert_eq!(size_of::<Announcement>(), 3 * 8 + 8 + MAX_ROBOTS * (16 + 4 + 1 + 1));
+        assert_eq!(size_of::<Announcement>(), 3 * 8 + 8 + 8 + MAX_ROBOTS * (16 + 16 + 4 + 1 + 1));
         assert_eq!(size_of::<Observation>(), 4 * 8 + MAX_ROBOTS * 16);
         assert_eq!(size_of::<PolicyAnswer>(), 5 * 8 + 2 * 4 + 32 + 5 * MAX_ROBOTS);
         assert_eq!(size_of::<Plan>(), 3 * 8 + 2 * 4 + 2 * 16 + 50 * 16);

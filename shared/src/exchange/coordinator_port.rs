@@ -62,7 +62,7 @@ impl CoordinatorPort {
                 announcement.bodies[robot] = bodies[robot].into();
             }
         }
-        announcement.told_set_points = set_points.len().min(MAX_ROBOTS) as u16;
+        announcement.told_set_points = set_points.len() as u64;
         for (to, set_point) in announcement.set_points.iter_mut().zip(set_points) {
             *to = (*set_point).into();
         }
