@@ -3,7 +3,7 @@
 use crate::orders::Inbox;
 use std::path::Path;
 use vodca::Position;
-use vodca::membership::Membership;
+use vodca::membership::{Membership, State};
 use vodca::tasks::{Assignment, Tasks};
 
 /// Gives robots their set-points tick by tick.
@@ -34,9 +34,9 @@ impl Destinations {
         &self.set_points
     }
 
-    /// Whether somebody who takes part has something left to do.
+    /// Whether somebody who is not lost has something left to do: who is late is heard again.
     pub(crate) fn is_pending(&self, membership: &Membership) -> bool {
-        self.tasks.as_ref().is_some_and(|tasks| tasks.is_pending(|robot| membership.state(robot).takes_part()))
+        self.tasks.as_ref().is_some_and(|tasks| tasks.is_pending(|robot| membership.state(robot) != State::Lost))
     }
 
     /// Decides where everybody goes from tick `tick` on; `measured` is where everybody is then, m, by robot number.
@@ -57,5 +57,29 @@ impl Destinations {
             self.set_points.clear();
             self.set_points.extend(tasks.scenario().robots.iter().map(|robot| robot.set_point));
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use vodca::params::Params;
+    use vodca::scenario::Scenario;
+    use vodca::tasks::Task;
+
+    #[test]
+    fn a_run_is_not_over_while_a_late_robot_has_a_task() {
+        let scenario = Scenario::resolve(Some("ring:2"), None).unwrap();
+        let mut tasks = Tasks::new(&scenario, &Params::safe());
+        tasks.add(Task { robot: 1, set_point: Position::zeros(), after: 0 });
+        let place = tempfile::tempdir().unwrap();
+        let destinations = Destinations::new(Some(tasks), place.path());
+        let mut membership = Membership::new(2);
+        assert!((0..2).all(|robot| membership.join(robot, 1, 0)));
+        membership.begin(0);
+        assert!(membership.miss(1) && membership.state(1) == State::Late);
+        assert!(destinations.is_pending(&membership));
+        assert!(membership.lose(1, 0));
+        assert!(!destinations.is_pending(&membership));
     }
 }
